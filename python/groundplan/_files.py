@@ -1,0 +1,57 @@
+"""Writing files whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from groundplan._errors import FormatError
+
+
+@contextlib.contextmanager
+def whole(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Give a path beside `path` to write to; on success it is renamed to `path`, else it is removed.
+
+    Raises
+    ------
+    FormatError
+        ``file.write`` when the place cannot be written: no permission, disk full, a directory in the way.
+    """
+    target = Path(path)
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=f".{target.stem}.", suffix=target.suffix, dir=target.parent)
+        os.close(handle)
+    except OSError as fault:
+        raise unwritable(target, fault) from fault
+    beside = Path(name)
+    try:
+        yield beside
+        umask = os.umask(0)
+        os.umask(umask)
+        beside.chmod(0o666 & ~umask)
+        os.replace(beside, target)
+    except OSError as fault:
+        raise unwritable(target, fault) from fault
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write UTF-8 text whole or not at all."""
+    with whole(path) as beside:
+        beside.write_text(text, encoding="utf-8")
+
+
+def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
+    """Write bytes whole or not at all."""
+    with whole(path) as beside:
+        beside.write_bytes(data)
+
+
+def unwritable(path: Path, fault: OSError) -> FormatError:
+    """The one text for a place that cannot be written."""
+    return FormatError("file.write", f"cannot write {path}: {fault.strerror or fault}")

@@ -1,0 +1,60 @@
+"""The Map: pixels as they lie, and what each value of a pixel means."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+#: The states a pixel value can have; the order is the binding's.
+FREE, OCCUPIED, UNKNOWN = 0, 1, 2
+
+
+@dataclass(frozen=True)
+class MapWarning:
+    """Partial trouble: a stable code and a sentence that names the value."""
+
+    code: str
+    message: str
+
+
+@dataclass(frozen=True)
+class Map:
+    """An occupancy grid with its frame. Nothing is converted: a 256-entry table says what each value means.
+
+    Attributes
+    ----------
+    pixels : (height, width) uint8
+        As they lie in the file; row 0 is the top row. May be a memory map or a view with negative row stride.
+    values : (256,) int8
+        What each pixel value means as nav_msgs/OccupancyGrid says it: 0..100 percent occupied, -1 unknown.
+    states : (256,) uint8
+        FREE, OCCUPIED or UNKNOWN for each pixel value.
+    resolution : float
+        Metres per pixel.
+    origin : (float, float, float)
+        Pose of the lower left corner of the lower left pixel in the map frame: metres, metres, radians.
+    image : str
+        Name of the image, for the survey; never a directory.
+    warnings : tuple of MapWarning
+        What was odd about the file and what was done about it.
+    """
+
+    pixels: npt.NDArray[np.uint8]
+    values: npt.NDArray[np.int8]
+    states: npt.NDArray[np.uint8]
+    resolution: float
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    image: str = ""
+    warnings: tuple[MapWarning, ...] = field(default=())
+
+    @property
+    def height(self) -> int:
+        """Rows of pixels."""
+        return int(self.pixels.shape[0])
+
+    @property
+    def width(self) -> int:
+        """Columns of pixels."""
+        return int(self.pixels.shape[1])
