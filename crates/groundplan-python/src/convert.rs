@@ -1,0 +1,381 @@
+//! Dictionaries of arrays <-> the method's structures.
+
+use groundplan::adjacency::Adjacency;
+use groundplan::arrangement::NONE;
+use groundplan::directions::Directions;
+use groundplan::gradients::Gradients;
+use groundplan::lines::Lines;
+use groundplan::occupancy::Occupancy;
+use groundplan::parameters::{Parameter, Range};
+use groundplan::radiograms::Radiogram;
+use groundplan::subdivision::Subdivision;
+use groundplan::walls::{Wall, WallKind, Walls};
+use groundplan::wavelets::Response;
+use groundplan::{Frame, Grid, Label, ParameterError, Parameters, State, Table, Value};
+use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyString};
+
+/// A grid as Python holds it: pixels (height, width) uint8 row after row, whether the first row is the lowest, values
+/// (256,) int8, states (256,) uint8, resolution and origin.
+#[derive(FromPyObject)]
+pub struct Layout<'py>(
+    PyReadonlyArray2<'py, u8>,
+    bool,
+    PyReadonlyArray1<'py, i8>,
+    PyReadonlyArray1<'py, u8>,
+    f64,
+    [f64; 3],
+);
+
+impl Layout<'_> {
+    /// Where the grid lies.
+    pub fn frame(&self) -> Frame {
+        let shape = self.0.as_array().dim();
+        Frame::new(shape.1, shape.0, self.4, self.5)
+    }
+
+    /// Runs a stage over the pixels where they lie, with Python's lock released.
+    pub fn with_grid<T: Send>(&self, py: Python<'_>, stage: impl FnOnce(&Grid) -> T + Send) -> PyResult<T> {
+        let pixels = self.0.as_slice()?;
+        let (values, states) = (self.2.as_slice()?, self.3.as_slice()?);
+        let values: &[i8; 256] = values.try_into().map_err(|_| PyValueError::new_err("256 values"))?;
+        let states: &[u8; 256] = states.try_into().map_err(|_| PyValueError::new_err("256 states"))?;
+        let table = Table::new(values, states);
+        let grid = Grid::new(pixels, self.1, &table, self.frame());
+        Ok(py.detach(|| stage(&grid)))
+    }
+}
+
+/// A dictionary being filled.
+pub struct Named<'py>(Bound<'py, PyDict>);
+
+impl<'py> Named<'py> {
+    pub fn new(py: Python<'py>) -> Self {
+        Self(PyDict::new(py))
+    }
+
+    pub fn with(self, name: &str, value: impl IntoPyObject<'py>) -> PyResult<Self> {
+        self.0.set_item(name, value)?;
+        Ok(self)
+    }
+
+    pub fn list<T: Element>(self, name: &str, values: Vec<T>) -> PyResult<Self> {
+        let array = PyArray1::from_vec(self.0.py(), values).into_any();
+        self.with(name, array)
+    }
+
+    pub fn pairs<T: Element + Copy>(self, name: &str, values: &[[T; 2]]) -> PyResult<Self> {
+        let flat = PyArray1::from_vec(self.0.py(), values.as_flattened().to_vec());
+        let array = flat.reshape([values.len(), 2])?.into_any();
+        self.with(name, array)
+    }
+
+    pub fn done(self) -> PyResult<Bound<'py, PyDict>> {
+        Ok(self.0)
+    }
+}
+
+fn item<'py>(dict: &Bound<'py, PyDict>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    dict.get_item(name)?.ok_or_else(|| PyValueError::new_err(format!("{name} is missing")))
+}
+
+fn number<'py, T: FromPyObjectOwned<'py>>(dict: &Bound<'py, PyDict>, name: &str) -> PyResult<T> {
+    item(dict, name)?.extract().map_err(Into::into)
+}
+
+fn list<T: Element + Copy>(dict: &Bound<'_, PyDict>, name: &str) -> PyResult<Vec<T>> {
+    let item = item(dict, name)?;
+    let array = item.cast::<PyArray1<T>>()?.readonly();
+    Ok(array.as_array().to_vec())
+}
+
+fn pairs<T: Element + Copy>(dict: &Bound<'_, PyDict>, name: &str) -> PyResult<Vec<[T; 2]>> {
+    let item = item(dict, name)?;
+    let array = item.cast::<PyArray2<T>>()?.readonly();
+    let array = array.as_array();
+    if array.ncols() != 2 {
+        return Err(PyValueError::new_err(format!("{name} has {} columns and not 2", array.ncols())));
+    }
+    Ok(array.rows().into_iter().map(|row| [row[0], row[1]]).collect())
+}
+
+/// Ids as Python has them: none is -1.
+fn signed(ids: &[u32]) -> Vec<i32> {
+    ids.iter().map(|&id| if id == NONE { -1 } else { id as i32 }).collect()
+}
+
+fn unsigned(ids: &[i32]) -> Vec<u32> {
+    ids.iter().map(|&id| u32::try_from(id).unwrap_or(NONE)).collect()
+}
+
+pub fn parameters(dict: &Bound<'_, PyDict>) -> PyResult<Parameters> {
+    let mut parameters = Parameters::default();
+    for (name, value) in dict {
+        let name: String = name.extract()?;
+        let value = to_value(&name, &value)?;
+        parameters.set(&name, value).map_err(|fault| raise(dict.py(), &fault))?;
+    }
+    Ok(parameters)
+}
+
+fn to_value(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
+    if value.is_none() {
+        return Ok(Value::Auto);
+    }
+    if let Ok(word) = value.cast::<PyString>() {
+        return Ok(Value::Word(word.to_string()));
+    }
+    if !value.is_instance_of::<PyBool>() {
+        if let Ok(number) = value.extract::<f64>() {
+            return Ok(Value::Number(number));
+        }
+        if let Ok(numbers) = value.extract::<Vec<f64>>() {
+            return Ok(Value::Numbers(numbers));
+        }
+    }
+    let message = format!("{name} cannot be {}", value.repr()?);
+    let fault = ParameterError { code: "parameter.range", message, hint: "a number, a word or a list".to_owned() };
+    Err(raise(value.py(), &fault))
+}
+
+/// The one error that crosses over: Groundplan's own, with its code and its hint.
+fn raise(py: Python<'_>, fault: &ParameterError) -> PyErr {
+    let made = py
+        .import("groundplan._errors")
+        .and_then(|module| module.getattr("ParameterError"))
+        .and_then(|class| class.call1((fault.code, &fault.message, &fault.hint)));
+    made.map_or_else(|error| error, PyErr::from_value)
+}
+
+fn from_value<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
+    match value {
+        Value::Auto => Ok(py.None().into_bound(py)),
+        Value::Number(n) => Ok(n.into_pyobject(py)?.into_any()),
+        Value::Word(word) => Ok(word.into_pyobject(py)?.into_any()),
+        Value::Numbers(ns) => ns.into_pyobject(py),
+    }
+}
+
+pub fn values<'py>(py: Python<'py>, parameters: &Parameters) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for (name, value) in parameters.values() {
+        dict.set_item(name, from_value(py, &value)?)?;
+    }
+    Ok(dict)
+}
+
+pub fn table_row<'py>(py: Python<'py>, row: &Parameter) -> PyResult<Bound<'py, PyDict>> {
+    let words = if let Range::Word(words) = row.range { words.to_vec() } else { Vec::new() };
+    Named::new(py)
+        .with("name", row.name)?
+        .with("unit", row.unit)?
+        .with("default", from_value(py, &row.default())?)?
+        .with("range", row.range.to_string())?
+        .with("words", words)?
+        .with("sentence", row.sentence)?
+        .with("section", row.section)?
+        .done()
+}
+
+pub fn from_gradients<'py>(py: Python<'py>, made: &Gradients) -> PyResult<Bound<'py, PyDict>> {
+    Named::new(py)
+        .pairs("pixels", &made.pixels)?
+        .list("angles", made.angles.clone())?
+        .list("magnitudes", made.magnitudes.clone())?
+        .done()
+}
+
+pub fn gradients(dict: &Bound<'_, PyDict>) -> PyResult<Gradients> {
+    Ok(Gradients {
+        pixels: pairs(dict, "pixels")?,
+        angles: list(dict, "angles")?,
+        magnitudes: list(dict, "magnitudes")?,
+    })
+}
+
+pub fn from_directions<'py>(py: Python<'py>, made: &Directions) -> PyResult<Bound<'py, PyDict>> {
+    Named::new(py)
+        .list("angles", made.angles.clone())?
+        .list("weights", made.weights.clone())?
+        .list("histogram", made.histogram.clone())?
+        .with("explained", made.explained)?
+        .done()
+}
+
+pub fn directions(dict: &Bound<'_, PyDict>) -> PyResult<Directions> {
+    Ok(Directions {
+        angles: list(dict, "angles")?,
+        weights: list(dict, "weights")?,
+        histogram: list(dict, "histogram")?,
+        explained: number(dict, "explained")?,
+    })
+}
+
+pub fn from_radiograms<'py>(py: Python<'py>, made: &[Radiogram]) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let convert = |r: &Radiogram| {
+        Named::new(py)
+            .with("direction", r.direction)?
+            .with("start", r.start)?
+            .with("step", r.step)?
+            .list("values", r.values.clone())?
+            .done()
+    };
+    made.iter().map(convert).collect()
+}
+
+pub fn radiogram(dict: &Bound<'_, PyDict>) -> PyResult<Radiogram> {
+    Ok(Radiogram {
+        direction: number(dict, "direction")?,
+        start: number(dict, "start")?,
+        step: number(dict, "step")?,
+        values: list(dict, "values")?,
+    })
+}
+
+pub fn from_response<'py>(py: Python<'py>, made: &Response, step: f64) -> PyResult<Bound<'py, PyDict>> {
+    Named::new(py)
+        .list("widths", made.widths.iter().map(|w| w * step).collect())?
+        .with("rows", PyArray2::from_vec2(py, &made.rows).map_err(|e| PyValueError::new_err(e.to_string()))?)?
+        .done()
+}
+
+pub fn from_lines<'py>(py: Python<'py>, made: &Lines) -> PyResult<Bound<'py, PyDict>> {
+    Named::new(py)
+        .list("directions", made.directions.clone())?
+        .list("offsets", made.offsets.clone())?
+        .list("amplitudes", made.amplitudes.clone())?
+        .list("widths", made.widths.clone())?
+        .with("min_amplitude", made.min_amplitude)?
+        .done()
+}
+
+pub fn lines(dict: &Bound<'_, PyDict>) -> PyResult<Lines> {
+    Ok(Lines {
+        directions: list(dict, "directions")?,
+        offsets: list(dict, "offsets")?,
+        amplitudes: list(dict, "amplitudes")?,
+        widths: list(dict, "widths")?,
+        min_amplitude: number(dict, "min_amplitude")?,
+    })
+}
+
+pub fn from_subdivision<'py>(py: Python<'py>, made: &Subdivision) -> PyResult<Bound<'py, PyDict>> {
+    let sides: Vec<[i32; 2]> =
+        made.edge_faces.iter().map(|f| f.map(|f| if f == NONE { -1 } else { f as i32 })).collect();
+    Named::new(py)
+        .pairs("vertices", &made.vertices)?
+        .pairs("edge_vertices", &made.edge_vertices)?
+        .list("edge_lines", signed(&made.edge_lines))?
+        .pairs("edge_faces", &sides)?
+        .list("face_vertices", made.face_vertices.clone())?
+        .list("face_edges", made.face_edges.clone())?
+        .list("face_offsets", made.face_offsets.clone())?
+        .pairs("centres", &made.centres)?
+        .list("areas", made.areas.clone())?
+        .with("map_area", made.map_area)?
+        .done()
+}
+
+pub fn subdivision(dict: &Bound<'_, PyDict>) -> PyResult<Subdivision> {
+    let sides: Vec<[i32; 2]> = pairs(dict, "edge_faces")?;
+    Ok(Subdivision {
+        vertices: pairs(dict, "vertices")?,
+        edge_vertices: pairs(dict, "edge_vertices")?,
+        edge_lines: unsigned(&list::<i32>(dict, "edge_lines")?),
+        edge_faces: sides.into_iter().map(|f| f.map(|f| u32::try_from(f).unwrap_or(NONE))).collect(),
+        face_vertices: list(dict, "face_vertices")?,
+        face_edges: list(dict, "face_edges")?,
+        face_offsets: list(dict, "face_offsets")?,
+        centres: pairs(dict, "centres")?,
+        areas: list(dict, "areas")?,
+        map_area: number(dict, "map_area")?,
+    })
+}
+
+pub fn from_occupancy<'py>(py: Python<'py>, made: &Occupancy) -> PyResult<Bound<'py, PyDict>> {
+    Named::new(py)
+        .list("faces", made.faces.clone())?
+        .list("unknown", made.unknown.clone())?
+        .list("free", made.free.clone())?
+        .list("pixels", made.pixels.clone())?
+        .list("states", made.states.iter().map(|s| *s as u8).collect())?
+        .list("edges", made.edges.clone())?
+        .done()
+}
+
+pub fn occupancy(dict: &Bound<'_, PyDict>) -> PyResult<Occupancy> {
+    let states: Vec<u8> = list(dict, "states")?;
+    let state = |s: u8| match s {
+        0 => State::Free,
+        1 => State::Occupied,
+        _ => State::Unknown,
+    };
+    Ok(Occupancy {
+        faces: list(dict, "faces")?,
+        unknown: list(dict, "unknown")?,
+        free: list(dict, "free")?,
+        pixels: list(dict, "pixels")?,
+        states: states.into_iter().map(state).collect(),
+        edges: list(dict, "edges")?,
+    })
+}
+
+pub fn from_walls<'py>(py: Python<'py>, made: &Walls) -> PyResult<Bound<'py, PyDict>> {
+    let ends: Vec<[f64; 2]> = made.walls.iter().flat_map(|w| w.points).collect();
+    Named::new(py)
+        .list("cogent", made.cogent.clone())?
+        .list("disparity", made.disparity.clone())?
+        .pairs("points", &ends)?
+        .list("lines", made.walls.iter().map(|w| w.line).collect())?
+        .list("freestanding", made.walls.iter().map(|w| w.kind == WallKind::Freestanding).collect())?
+        .done()
+}
+
+pub fn walls(dict: &Bound<'_, PyDict>) -> PyResult<Walls> {
+    let ends: Vec<[f64; 2]> = pairs(dict, "points")?;
+    let lines: Vec<u32> = list(dict, "lines")?;
+    let freestanding: Vec<bool> = list(dict, "freestanding")?;
+    let wall = |((ends, &line), &free): ((&[[f64; 2]], &u32), &bool)| Wall {
+        points: [ends[0], ends[1]],
+        line,
+        kind: if free { WallKind::Freestanding } else { WallKind::Separating },
+    };
+    Ok(Walls {
+        cogent: list(dict, "cogent")?,
+        disparity: list(dict, "disparity")?,
+        walls: ends.chunks_exact(2).zip(&lines).zip(&freestanding).map(wall).collect(),
+    })
+}
+
+pub fn from_adjacency<'py>(py: Python<'py>, made: &Adjacency) -> PyResult<Bound<'py, PyDict>> {
+    Named::new(py)
+        .pairs("faces", &made.faces)?
+        .list("edges", made.edges.clone())?
+        .list("connected", made.connected.clone())?
+        .done()
+}
+
+/// Labels are few: each is a dictionary of plain values, as in the survey's JSON.
+pub fn from_labels<'py>(py: Python<'py>, made: &[Label]) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let convert = |label: &Label| match label {
+        Label::Corridor { faces, polygon, axis, width, name } => Named::new(py)
+            .with("kind", "corridor")?
+            .with("faces", faces)?
+            .with("polygon", polygon)?
+            .with("axis", axis)?
+            .with("width", *width)?
+            .with("name", name)?
+            .done(),
+        Label::Junction { kind, faces, polygon, at, corridors } => Named::new(py)
+            .with("kind", "junction")?
+            .with("type", kind.name())?
+            .with("faces", faces)?
+            .with("polygon", polygon)?
+            .with("at", at)?
+            .with("corridors", corridors)?
+            .done(),
+    };
+    made.iter().map(convert).collect()
+}

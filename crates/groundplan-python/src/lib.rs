@@ -1,0 +1,187 @@
+//! The Python module `groundplan._core`: arrays and parameters in, arrays out; no logic.
+
+mod convert;
+
+/// The method, as Python sees it. Every stage takes and gives dictionaries of arrays, which `groundplan.survey` wraps.
+#[pyo3::pymodule]
+mod _core {
+    use crate::convert::{self, Layout, Named};
+    use groundplan::{Given, TABLE, adjacency, arrangement, directions, gradients, lines, occupancy, radiograms};
+    use groundplan::{subdivision::Subdivision, walls};
+    use pyo3::prelude::*;
+    use pyo3::types::PyDict;
+
+    /// The version of the method.
+    #[pyfunction]
+    fn version() -> &'static str {
+        groundplan::VERSION
+    }
+
+    /// Rows of TABLE: name, unit, default, range, sentence, section.
+    #[pyfunction]
+    fn table(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+        TABLE.iter().map(|row| convert::table_row(py, row)).collect()
+    }
+
+    /// Every parameter's value, with those of `parameters` set.
+    #[pyfunction]
+    fn resolve<'py>(py: Python<'py>, parameters: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
+        convert::values(py, &convert::parameters(parameters)?)
+    }
+
+    /// All stages in a row.
+    #[pyfunction]
+    #[pyo3(signature = (layout, parameters, threads, directions=None, lines=None))]
+    fn survey<'py>(
+        py: Python<'py>,
+        layout: Layout<'py>,
+        parameters: &Bound<'py, PyDict>,
+        threads: usize,
+        directions: Option<&Bound<'py, PyDict>>,
+        lines: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let parameters = convert::parameters(parameters)?;
+        let given = Given {
+            directions: directions.map(convert::directions).transpose()?,
+            lines: lines.map(convert::lines).transpose()?,
+        };
+        let made = layout.with_grid(py, |grid| groundplan::survey(grid, &parameters, given, threads))?;
+        Named::new(py)
+            .with("directions", convert::from_directions(py, &made.directions)?)?
+            .with("radiograms", convert::from_radiograms(py, &made.radiograms)?)?
+            .with("lines", convert::from_lines(py, &made.lines)?)?
+            .with("subdivision", convert::from_subdivision(py, &made.subdivision)?)?
+            .with("occupancy", convert::from_occupancy(py, &made.occupancy)?)?
+            .with("walls", convert::from_walls(py, &made.walls)?)?
+            .with("adjacency", convert::from_adjacency(py, &made.adjacency)?)?
+            .with("labels", convert::from_labels(py, &made.labels)?)?
+            .with("warnings", made.warnings.into_iter().map(|w| (w.code, w.message)).collect::<Vec<_>>())?
+            .done()
+    }
+
+    /// II-A: oriented gradients of the edge pixels.
+    #[pyfunction]
+    fn find_gradients<'py>(
+        py: Python<'py>,
+        layout: Layout<'py>,
+        parameters: &Bound<'py, PyDict>,
+        threads: usize,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let parameters = convert::parameters(parameters)?;
+        let made = layout.with_grid(py, |grid| gradients::find_gradients(grid, &parameters, threads))?;
+        convert::from_gradients(py, &made)
+    }
+
+    /// II-A: dominant directions.
+    #[pyfunction]
+    fn find_directions<'py>(
+        py: Python<'py>,
+        layout: Layout<'py>,
+        gradients: &Bound<'py, PyDict>,
+        parameters: &Bound<'py, PyDict>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let made =
+            directions::find_directions(&layout.frame(), &convert::gradients(gradients)?, &convert::parameters(parameters)?);
+        convert::from_directions(py, &made)
+    }
+
+    /// II-B: one radiogram for each direction.
+    #[pyfunction]
+    fn find_radiograms<'py>(
+        py: Python<'py>,
+        layout: Layout<'py>,
+        gradients: &Bound<'py, PyDict>,
+        directions: &Bound<'py, PyDict>,
+        parameters: &Bound<'py, PyDict>,
+    ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let (gradients, directions) = (convert::gradients(gradients)?, convert::directions(directions)?);
+        let parameters = convert::parameters(parameters)?;
+        convert::from_radiograms(py, &radiograms::find_radiograms(&layout.frame(), &gradients, &directions, &parameters))
+    }
+
+    /// II-B: the wavelet response that a radiogram's peaks are read from: widths in metres, and a row for each.
+    #[pyfunction]
+    fn find_response<'py>(
+        py: Python<'py>,
+        radiogram: &Bound<'py, PyDict>,
+        parameters: &Bound<'py, PyDict>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let radiogram = convert::radiogram(radiogram)?;
+        let made = lines::respond(&radiogram, &convert::parameters(parameters)?);
+        convert::from_response(py, &made, radiogram.step)
+    }
+
+    /// II-B: lines.
+    #[pyfunction]
+    fn find_lines<'py>(
+        py: Python<'py>,
+        radiograms: Vec<Bound<'py, PyDict>>,
+        parameters: &Bound<'py, PyDict>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let radiograms = radiograms.iter().map(convert::radiogram).collect::<PyResult<Vec<_>>>()?;
+        convert::from_lines(py, &lines::find_lines(&radiograms, &convert::parameters(parameters)?))
+    }
+
+    /// II-C: vertices, edges, faces.
+    #[pyfunction]
+    fn subdivide<'py>(
+        py: Python<'py>,
+        layout: Layout<'py>,
+        directions: &Bound<'py, PyDict>,
+        lines: &Bound<'py, PyDict>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (directions, lines) = (convert::directions(directions)?, convert::lines(lines)?);
+        let frame = layout.frame();
+        let made = arrangement::arrange(&frame, &directions.angles, &lines);
+        convert::from_subdivision(py, &Subdivision::new(&frame, &made))
+    }
+
+    /// Every broken invariant of a subdivision.
+    #[pyfunction]
+    fn problems(subdivision: &Bound<'_, PyDict>) -> PyResult<Vec<String>> {
+        Ok(convert::subdivision(subdivision)?.problems())
+    }
+
+    /// II-D: O(face), O(edge).
+    #[pyfunction]
+    fn find_occupancy<'py>(
+        py: Python<'py>,
+        layout: Layout<'py>,
+        gradients: &Bound<'py, PyDict>,
+        directions: &Bound<'py, PyDict>,
+        lines: &Bound<'py, PyDict>,
+        parameters: &Bound<'py, PyDict>,
+        threads: usize,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (directions, lines) = (convert::directions(directions)?, convert::lines(lines)?);
+        let (gradients, parameters) = (convert::gradients(gradients)?, convert::parameters(parameters)?);
+        let made = layout.with_grid(py, |grid| {
+            let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines);
+            occupancy::find_occupancy(grid, &arrangement, &directions, &lines, &gradients, &parameters, threads)
+        })?;
+        convert::from_occupancy(py, &made)
+    }
+
+    /// II-D: C(edge) and the walls.
+    #[pyfunction]
+    fn find_walls<'py>(
+        py: Python<'py>,
+        subdivision: &Bound<'py, PyDict>,
+        occupancy: &Bound<'py, PyDict>,
+        parameters: &Bound<'py, PyDict>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (subdivision, occupancy) = (convert::subdivision(subdivision)?, convert::occupancy(occupancy)?);
+        convert::from_walls(py, &walls::find_walls(&subdivision, &occupancy, &convert::parameters(parameters)?))
+    }
+
+    /// II-D, II-E: the dual.
+    #[pyfunction]
+    fn find_adjacency<'py>(
+        py: Python<'py>,
+        subdivision: &Bound<'py, PyDict>,
+        walls: &Bound<'py, PyDict>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (subdivision, walls) = (convert::subdivision(subdivision)?, convert::walls(walls)?);
+        convert::from_adjacency(py, &adjacency::find_adjacency(&subdivision, &walls))
+    }
+}

@@ -1,0 +1,191 @@
+//! II-A: the histogram of oriented gradients finds the directions, the sharpness of their radiograms measures them.
+
+use crate::gradients::Gradients;
+use crate::grid::{Frame, angle_between, tidy, tidy_angle, undirected};
+use crate::parameters::Parameters;
+use crate::radiograms::{Selection, metres_per_unit};
+use std::f64::consts::PI;
+
+/// The dominant directions, strongest first, and what they were decided from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Directions {
+    /// Angle of the lines themselves in the map frame, radians in [-pi/2, pi/2).
+    pub angles: Vec<f64>,
+    /// Structure that lines up along each, as a share of the strongest's.
+    pub weights: Vec<f64>,
+    /// Histogram of oriented gradients: summed magnitude over the angle in the map frame, bins from -pi/2 upwards.
+    pub histogram: Vec<f64>,
+    /// Share of the edge pixels' length that lines up along the directions, 0 to 1.
+    pub explained: f64,
+}
+
+/// Bins of the histogram: a quarter of a degree each.
+const BINS: usize = 720;
+/// The histogram is smoothed by a triangle of this half width, in bins.
+const SMOOTHING: usize = 6;
+/// Candidates lower than this share of the highest bin are not looked at.
+const LOWEST_CANDIDATE: f64 = 0.04;
+/// How many candidates are measured at most.
+const MOST_CANDIDATES: usize = 16;
+/// Directions that are given closer than this are one, radians.
+const CLOSEST: f64 = 1e-6;
+/// Steps of the search for the sharpest radiogram: half range and step, degrees.
+const SEARCH: [(f64, f64); 3] = [(3.0, 0.25), (0.3, 0.05), (0.06, 0.01)];
+/// A line shorter than this many pixels says nothing of a direction.
+const SHORTEST_PIXELS: f64 = 20.0;
+/// Half the window of the background that a line must stand out of, pixels.
+const BACKGROUND_PIXELS: usize = 20;
+
+/// Finds the dominant directions, or measures how much lines up along those that are given.
+///
+/// The strongest peak of the histogram is measured first and the pixels that lie on its lines are taken out, so that
+/// no pixel speaks for two directions; then the next, until what lines up is no longer worth the name.
+#[must_use]
+pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parameters) -> Directions {
+    let mut rest = gradients.clone();
+    let histogram = histogram(gradients);
+    let mut found: Vec<(f64, f64)> = Vec::new();
+    if let Some(given) = &parameters.directions_angles_deg {
+        for angle in given.iter().map(|a| frame.angle_to_grid(a.to_radians())) {
+            if found.iter().all(|(other, _)| angle_between(*other, angle) > CLOSEST) {
+                found.push((angle, take_aligned(frame, &mut rest, angle, parameters)));
+            }
+        }
+    } else {
+        search(frame, &mut rest, parameters, &mut found);
+    }
+    found.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let strongest = found.first().map_or(0.0, |f| f.1);
+    match parameters.directions_count {
+        Some(count) => found.truncate(count),
+        None if parameters.directions_angles_deg.is_some() => {}
+        None => found.retain(|(_, weight)| *weight >= parameters.directions_min_weight * strongest),
+    }
+    let sum: f64 = found.iter().map(|f| f.1).sum();
+    let total = gradients.pixels.len() as f64 * frame.resolution;
+    Directions {
+        angles: found.iter().map(|(angle, _)| tidy_angle(frame.angle_to_map(*angle))).collect(),
+        weights: found.iter().map(|(_, w)| if strongest > 0.0 { tidy(w / strongest) } else { 0.0 }).collect(),
+        histogram: turned(&histogram, frame),
+        explained: if total > 0.0 { tidy((sum / total).min(1.0)) } else { 0.0 },
+    }
+}
+
+/// Takes direction after direction out of `rest`.
+fn search(frame: &Frame, rest: &mut Gradients, parameters: &Parameters, found: &mut Vec<(f64, f64)>) {
+    let separation = parameters.directions_separation_deg.to_radians();
+    let mut tried: Vec<f64> = Vec::new();
+    while tried.len() < MOST_CANDIDATES {
+        let candidates = candidates(&histogram(rest));
+        let fresh = |angle: &f64| tried.iter().all(|other| angle_between(*other, *angle) >= separation / 2.0);
+        let Some(start) = candidates.into_iter().find(fresh) else { return };
+        let angle = sharpest(frame, rest, start, parameters);
+        tried.push(start);
+        if found.iter().any(|(other, _)| angle_between(*other, angle) < separation) {
+            continue;
+        }
+        let metres = take_aligned(frame, rest, angle, parameters);
+        if metres > 0.0 {
+            found.push((angle, metres));
+        }
+    }
+}
+
+/// Summed magnitudes over the angle on the grid.
+fn histogram(gradients: &Gradients) -> Vec<u64> {
+    let mut bins = vec![0u64; BINS];
+    for (&angle, &magnitude) in gradients.angles.iter().zip(&gradients.magnitudes) {
+        let bin = ((f64::from(angle) / PI + 0.5) * BINS as f64) as usize;
+        bins[bin.min(BINS - 1)] += u64::from(magnitude);
+    }
+    bins
+}
+
+/// The histogram over the angle in the map frame.
+fn turned(histogram: &[u64], frame: &Frame) -> Vec<f64> {
+    let shift = (frame.origin[2] / PI * BINS as f64).round().rem_euclid(BINS as f64) as usize;
+    (0..BINS).map(|bin| histogram[(bin + BINS - shift) % BINS] as f64).collect()
+}
+
+/// Peaks of the smoothed histogram, highest first, as angles on the grid.
+fn candidates(histogram: &[u64]) -> Vec<f64> {
+    let at = |bin: usize, shift: isize| histogram[(bin as isize + shift).rem_euclid(BINS as isize) as usize];
+    let reach = SMOOTHING as isize;
+    let smooth: Vec<u64> =
+        (0..BINS).map(|bin| (-reach..=reach).map(|s| at(bin, s) * (reach + 1 - s.abs()) as u64).sum()).collect();
+    let highest = smooth.iter().copied().max().unwrap_or(0);
+    let mut peaks: Vec<usize> = (0..BINS)
+        .filter(|&bin| {
+            let value = smooth[bin];
+            let lower = |s: isize| smooth[(bin as isize + s).rem_euclid(BINS as isize) as usize];
+            value > 0
+                && value as f64 >= LOWEST_CANDIDATE * highest as f64
+                && (1..=reach).all(|s| value > lower(-s) && value >= lower(s))
+        })
+        .collect();
+    peaks.sort_by_key(|&bin| (std::cmp::Reverse(smooth[bin]), bin));
+    peaks.truncate(MOST_CANDIDATES);
+    peaks.into_iter().map(|bin| undirected(((bin as f64 + 0.5) / BINS as f64 - 0.5) * PI)).collect()
+}
+
+/// The angle near `start` at which the radiogram is sharpest.
+fn sharpest(frame: &Frame, gradients: &Gradients, start: f64, parameters: &Parameters) -> f64 {
+    let tolerance = parameters.radiograms_tolerance_deg.to_radians();
+    let pixels = Selection::along(gradients, start, tolerance, false);
+    let mut best = start;
+    for (range, step) in SEARCH {
+        let steps = (range / step).round() as i64;
+        let centre = best;
+        let tried: Vec<(f64, f64)> = (-steps..=steps)
+            .map(|n| centre + (n as f64 * step).to_radians())
+            .map(|angle| (angle, pixels.sharpness(frame, angle)))
+            .collect();
+        let top = (0..tried.len()).max_by(|&a, &b| tried[a].1.total_cmp(&tried[b].1)).unwrap_or(0);
+        best = tried[top].0;
+        if let (Some(left), Some(right)) = (top.checked_sub(1), tried.get(top + 1)) {
+            best += step.to_radians() * vertex(tried[left].1, tried[top].1, right.1);
+        }
+    }
+    undirected(best)
+}
+
+/// Where the parabola through three equally spaced values has its top, in steps from the middle one.
+fn vertex(left: f64, middle: f64, right: f64) -> f64 {
+    let bend = left - 2.0 * middle + right;
+    if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 }
+}
+
+/// Metres of structure that stand out of the background as lines along `angle`; the pixels on them are taken out.
+fn take_aligned(frame: &Frame, gradients: &mut Gradients, angle: f64, parameters: &Parameters) -> f64 {
+    let tolerance = parameters.radiograms_tolerance_deg.to_radians();
+    let selection = Selection::along(gradients, angle, tolerance, false);
+    let (first, bins) = selection.project(frame, angle);
+    let unit = metres_per_unit(frame, angle) / frame.resolution;
+    let values: Vec<f64> = bins.iter().map(|&bin| bin as f64 * unit).collect();
+    let mut sums = vec![0.0];
+    for value in &values {
+        sums.push(sums[sums.len() - 1] + value);
+    }
+    let over = |from: usize, to: usize| sums[to.min(values.len())] - sums[from];
+    let mut on_line = vec![false; values.len()];
+    let mut metres = 0.0;
+    let mut n = 1;
+    while n + 1 < values.len() {
+        let peak = over(n - 1, n + 2);
+        let top = values[n] >= values[n - 1] && values[n] > values[n + 1];
+        let (from, to) = (n.saturating_sub(BACKGROUND_PIXELS), (n + BACKGROUND_PIXELS + 1).min(values.len()));
+        let around = (over(from, to) - peak) / (to - from) as f64 * 3.0;
+        n += 1;
+        if top && peak > SHORTEST_PIXELS && peak > 2.0 * around {
+            metres += (peak - around) * frame.resolution;
+            on_line[n.saturating_sub(3)..(n + 2).min(values.len())].fill(true);
+            n += 1;
+        }
+    }
+    let mut keep = vec![true; gradients.pixels.len()];
+    for (&index, bin) in selection.indices.iter().zip(selection.bins(angle)) {
+        keep[index as usize] = !on_line[(bin - first) as usize];
+    }
+    gradients.retain(&keep);
+    metres
+}

@@ -1,0 +1,133 @@
+//! II-A: oriented gradients of the occupied pixels, row band by row band.
+//!
+//! The gradient of a trinary map's single pixels votes for 0, 45 and 90 degrees, whatever the wall's angle, because
+//! a wall is a staircase there. So the gradient of an edge pixel is taken over a window: the eigenvectors of the
+//! scatter matrix of the edge pixels around it give the direction along the wall and the normal across it, and the
+//! eigenvalues' disparity is the gradient's magnitude. Sums of integers only, so nothing depends on the order.
+
+use crate::bands::map_bands;
+use crate::grid::{Grid, State, undirected};
+use crate::parameters::Parameters;
+
+/// Edge pixels (occupied, with a 4-neighbour that is not) and the gradient at each, in rows from the bottom up.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Gradients {
+    /// Column and row (from the bottom) of each edge pixel.
+    pub pixels: Vec<[u32; 2]>,
+    /// Direction along the wall on the grid (the gradient is perpendicular to it), radians in [-pi/2, pi/2).
+    pub angles: Vec<f32>,
+    /// Magnitude, 0 (no direction: a speck, a post) to 255 (a straight wall).
+    pub magnitudes: Vec<u8>,
+}
+
+impl Gradients {
+    /// Keeps the pixels whose flag is set.
+    pub(crate) fn retain(&mut self, keep: &[bool]) {
+        let flags = || keep.iter().copied();
+        let (mut p, mut a, mut m) = (flags(), flags(), flags());
+        self.pixels.retain(|_| p.next().unwrap_or(false));
+        self.angles.retain(|_| a.next().unwrap_or(false));
+        self.magnitudes.retain(|_| m.next().unwrap_or(false));
+    }
+}
+
+/// Smallest window in which a staircase shows its slope, pixels.
+const MIN_RADIUS: usize = 7;
+/// Largest window, pixels; beyond it only time is lost.
+const MAX_RADIUS: usize = 32;
+
+/// Finds the edge pixels and their gradients.
+#[must_use]
+pub fn find_gradients(grid: &Grid, parameters: &Parameters, threads: usize) -> Gradients {
+    let height = grid.frame.height;
+    let rows: Vec<Vec<u32>> =
+        map_bands(height, threads, |band| edge_pixels(grid, band)).into_iter().flatten().collect();
+    let radius = (parameters.gradients_radius / grid.frame.resolution).round();
+    let radius = (radius.clamp(0.0, MAX_RADIUS as f64) as usize).clamp(MIN_RADIUS, MAX_RADIUS);
+    let parts = map_bands(height, threads, |band| {
+        let mut part = Gradients::default();
+        for y in band {
+            row_gradients(&rows, y, radius, &mut part);
+        }
+        part
+    });
+    let mut all = Gradients::default();
+    for part in parts {
+        all.pixels.extend(part.pixels);
+        all.angles.extend(part.angles);
+        all.magnitudes.extend(part.magnitudes);
+    }
+    all
+}
+
+/// Columns of the edge pixels of each row of the band.
+fn edge_pixels(grid: &Grid, band: std::ops::Range<usize>) -> Vec<Vec<u32>> {
+    let taken = grid.table.states.map(|s| s == State::Occupied);
+    let (width, height) = (grid.frame.width, grid.frame.height);
+    let is_taken = |row: &[u8], x: usize| taken[usize::from(row[x])];
+    band.map(|y| {
+        let row = grid.row(y);
+        // The map's border is no edge: what lies beyond it is not seen.
+        let below = grid.row(y.saturating_sub(1));
+        let above = grid.row((y + 1).min(height - 1));
+        let mut columns = Vec::new();
+        for (x, &value) in row.iter().enumerate() {
+            if taken[usize::from(value)]
+                && !(is_taken(row, x.saturating_sub(1))
+                    && is_taken(row, (x + 1).min(width - 1))
+                    && is_taken(below, x)
+                    && is_taken(above, x))
+            {
+                columns.push(x as u32);
+            }
+        }
+        columns
+    })
+    .collect()
+}
+
+/// Gradients of one row's edge pixels, from the scatter of the edge pixels within `radius` in x and y.
+fn row_gradients(rows: &[Vec<u32>], y: usize, radius: usize, out: &mut Gradients) {
+    let columns = &rows[y];
+    if columns.is_empty() {
+        return;
+    }
+    let around = y.saturating_sub(radius)..(y + radius + 1).min(rows.len());
+    let reach = radius as i64;
+    let mut starts = vec![0usize; around.len()];
+    for &column in columns {
+        let x = i64::from(column);
+        let (mut n, mut sx, mut sy, mut sxx, mut sxy, mut syy) = (0i64, 0i64, 0i64, 0i64, 0i64, 0i64);
+        for (start, other) in starts.iter_mut().zip(around.clone()) {
+            let row = &rows[other];
+            while *start < row.len() && i64::from(row[*start]) < x - reach {
+                *start += 1;
+            }
+            let dy = other as i64 - y as i64;
+            let (mut count, mut sum, mut squares) = (0, 0, 0);
+            for &near in &row[*start..] {
+                let dx = i64::from(near) - x;
+                if dx > reach {
+                    break;
+                }
+                count += 1;
+                sum += dx;
+                squares += dx * dx;
+            }
+            n += count;
+            sx += sum;
+            sxx += squares;
+            sy += count * dy;
+            sxy += sum * dy;
+            syy += count * dy * dy;
+        }
+        // Central second moments, all times n: still integers.
+        let (xx, xy, yy) = (n * sxx - sx * sx, n * sxy - sx * sy, n * syy - sy * sy);
+        let spread = (xx + yy) as f64;
+        let split = (((xx - yy) as f64).powi(2) + ((2 * xy) as f64).powi(2)).sqrt();
+        let magnitude = if spread > 0.0 { split / spread } else { 0.0 };
+        out.pixels.push([column, y as u32]);
+        out.angles.push(undirected(0.5 * libm::atan2((2 * xy) as f64, (xx - yy) as f64)) as f32);
+        out.magnitudes.push((magnitude * 255.0).round() as u8);
+    }
+}

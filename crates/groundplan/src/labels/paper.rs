@@ -1,0 +1,111 @@
+//! II-E: Algorithm 1 and Fig. 8 as printed.
+
+use super::outline;
+use super::{Evidence, JunctionKind, Label};
+use crate::grid::{State, tidy};
+use crate::subdivision::distance;
+
+/// Nodes of free faces with their neighbours over connected links.
+fn nodes(evidence: &Evidence) -> Vec<Vec<(u32, u32)>> {
+    let states = &evidence.occupancy.states;
+    let free = |face: u32| states[face as usize] == State::Free;
+    let mut lists = evidence.adjacency.neighbours(evidence.subdivision.faces());
+    for (face, list) in lists.iter_mut().enumerate() {
+        list.retain(|(other, _)| free(face as u32) && free(*other));
+    }
+    lists
+}
+
+pub fn find(evidence: &Evidence) -> Vec<Label> {
+    let nodes = nodes(evidence);
+    let mut labels = corridors(evidence, &nodes);
+    labels.extend(junctions(evidence, &nodes));
+    labels
+}
+
+/// Algorithm 1: a node is a junction if no two of its neighbours share any neighbour but itself; T with three
+/// neighbours, X with four.
+fn junctions(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
+    let shares = |i: u32, l: u32, k: u32| {
+        nodes[l as usize].iter().any(|(n, _)| *n != i && nodes[k as usize].iter().any(|(m, _)| m == n))
+    };
+    let mut found = Vec::new();
+    for (i, neighbours) in nodes.iter().enumerate() {
+        let kind = match neighbours.len() {
+            3 => JunctionKind::T,
+            4 => JunctionKind::X,
+            _ => continue,
+        };
+        let valid = neighbours
+            .iter()
+            .enumerate()
+            .all(|(n, (l, _))| neighbours[n + 1..].iter().all(|(k, _)| !shares(i as u32, *l, *k)));
+        if valid {
+            found.push(Label::Junction {
+                kind,
+                faces: vec![i as u32],
+                polygon: outline::polygon(evidence.subdivision, &[i as u32]),
+                at: evidence.subdivision.centres[i],
+                corridors: Vec::new(),
+            });
+        }
+    }
+    found
+}
+
+/// Fig. 8c: cogent on both long sides, connected at both ends; those that follow one another are one corridor.
+fn corridors(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
+    // The direction of a corridor's face, when it is one: its two open edges lie on lines of one direction.
+    let subdivision = evidence.subdivision;
+    let edge_of = |link: u32| evidence.adjacency.edges[link as usize] as usize;
+    let matches = |face: usize| {
+        let [(_, one), (_, two)] = nodes[face][..] else { return None };
+        let (one, two) = (edge_of(one), edge_of(two));
+        let heading = |e: usize| evidence.lines.directions.get(subdivision.edge_lines[e] as usize).copied();
+        let across = heading(one)?;
+        let open = subdivision.length(one).max(subdivision.length(two));
+        let apart = distance(middle(subdivision, one), middle(subdivision, two));
+        // "Long sides": the closed ones are at least as long as the open ones.
+        (heading(two)? == across && apart >= open).then_some([one, two])
+    };
+    let ends: Vec<Option<[usize; 2]>> = (0..nodes.len()).map(matches).collect();
+    let mut taken = vec![false; nodes.len()];
+    let mut labels = Vec::new();
+    for start in 0..nodes.len() {
+        if ends[start].is_none() || taken[start] {
+            continue;
+        }
+        let mut faces = vec![start as u32];
+        taken[start] = true;
+        let mut n = 0;
+        while n < faces.len() {
+            for (other, _) in &nodes[faces[n] as usize] {
+                if ends[*other as usize].is_some() && !taken[*other as usize] {
+                    taken[*other as usize] = true;
+                    faces.push(*other);
+                }
+            }
+            n += 1;
+        }
+        faces.sort_unstable();
+        let edges: Vec<usize> = faces.iter().filter_map(|&f| ends[f as usize]).flatten().collect();
+        let outer: Vec<usize> = edges.iter().copied().filter(|e| edges.iter().filter(|o| *o == e).count() == 1).collect();
+        let [first, last] = outer[..] else { continue };
+        let axis = [middle(subdivision, first), middle(subdivision, last)].map(|p| p.map(tidy));
+        let area: f64 = faces.iter().map(|&f| subdivision.areas[f as usize]).sum();
+        let length = distance(axis[0], axis[1]);
+        labels.push(Label::Corridor {
+            polygon: outline::polygon(subdivision, &faces),
+            faces,
+            axis,
+            width: tidy(if length > 0.0 { area / length } else { 0.0 }),
+            name: format!("A{:02}", labels.len() + 1),
+        });
+    }
+    labels
+}
+
+fn middle(subdivision: &crate::subdivision::Subdivision, edge: usize) -> [f64; 2] {
+    let [p, q] = subdivision.edge_vertices[edge].map(|v| subdivision.vertices[v as usize]);
+    [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0]
+}

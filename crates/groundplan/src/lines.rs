@@ -1,0 +1,114 @@
+//! II-B: peaks of the radiograms -> lines; III: the resolution knob over them.
+
+use crate::grid::tidy;
+use crate::parameters::Parameters;
+use crate::radiograms::Radiogram;
+use crate::wavelets::{self, Peak};
+
+/// Lines right across the map.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Lines {
+    /// Index of each line's direction.
+    pub directions: Vec<u32>,
+    /// Offset along the direction's normal (-sin, cos), metres in the map frame; ascending within a direction.
+    pub offsets: Vec<f64>,
+    /// Metres of structure that lie on the line.
+    pub amplitudes: Vec<f64>,
+    /// How well it lines up: the width (sigma) of the peak, metres.
+    pub widths: Vec<f64>,
+    /// Least amplitude that was let through, metres: what the resolution knob came to.
+    pub min_amplitude: f64,
+}
+
+impl Lines {
+    /// How many.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.offsets.len()
+    }
+
+    /// True when there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.offsets.is_empty()
+    }
+}
+
+/// Wavelets of one to twenty pixels, as the paper found sufficient.
+const WIDTHS_PIXELS: (f64, f64) = (1.0, 20.0);
+/// Lines are kept until this share of all that stands out is explained, unless a detail is asked for.
+const EXPLAINED: f64 = 0.97;
+/// Detail 1 lets through a line with this share of what the strongest lines have.
+const FINEST: f64 = 0.01;
+
+/// Finds the lines of all radiograms.
+#[must_use]
+pub fn find_lines(radiograms: &[Radiogram], parameters: &Parameters) -> Lines {
+    let mut found: Vec<(u32, f64, f64, f64)> = Vec::new();
+    for radiogram in radiograms {
+        let signal = &radiogram.values;
+        for peak in wavelets::peaks(&respond(radiogram, parameters), parameters.lines_snr) {
+            let (place, amplitude) = measure(signal, &peak);
+            let offset = radiogram.start + place * radiogram.step;
+            let width = peak.width * radiogram.step;
+            found.push((radiogram.direction as u32, tidy(offset), tidy(amplitude), tidy(width)));
+        }
+    }
+    let amplitudes: Vec<f64> = found.iter().map(|f| f.2).collect();
+    let least = least_amplitude(amplitudes, parameters);
+    found.retain(|f| f.2 >= least);
+    found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    Lines {
+        directions: found.iter().map(|f| f.0).collect(),
+        offsets: found.iter().map(|f| f.1).collect(),
+        amplitudes: found.iter().map(|f| f.2).collect(),
+        widths: found.iter().map(|f| f.3).collect(),
+        min_amplitude: least,
+    }
+}
+
+/// The wavelet response that a radiogram's peaks are read from.
+#[must_use]
+pub fn respond(radiogram: &Radiogram, parameters: &Parameters) -> wavelets::Response {
+    let bins = |metres: Option<f64>, pixels: f64| metres.map_or(pixels, |m| (m / radiogram.step).max(0.5));
+    let low = bins(parameters.lines_min_width, WIDTHS_PIXELS.0);
+    let high = bins(parameters.lines_max_width, WIDTHS_PIXELS.1).max(low);
+    wavelets::transform(&radiogram.values, &wavelets::widths(low, high))
+}
+
+/// A peak's centre in bins and its metres of structure, above the lower of its two flanks.
+fn measure(signal: &[f64], peak: &Peak) -> (f64, f64) {
+    let reach = (1.5 * peak.width).round().clamp(1.0, 4.0) as usize;
+    let from = peak.bin.saturating_sub(reach);
+    let to = (peak.bin + reach + 1).min(signal.len());
+    let base = signal[from].min(signal[to - 1]);
+    let (mut sum, mut moment) = (0.0, 0.0);
+    for (n, value) in signal[from..to].iter().enumerate() {
+        let above = (value - base).max(0.0);
+        sum += above;
+        moment += above * (from + n) as f64;
+    }
+    (if sum > 0.0 { moment / sum } else { peak.bin as f64 }, sum)
+}
+
+/// The resolution knob: the least amplitude of a line.
+fn least_amplitude(mut amplitudes: Vec<f64>, parameters: &Parameters) -> f64 {
+    if let Some(metres) = parameters.lines_min_amplitude {
+        return metres;
+    }
+    amplitudes.sort_by(|a, b| b.total_cmp(a));
+    let total: f64 = amplitudes.iter().sum();
+    let reaching = |share: f64| {
+        let mut sum = 0.0;
+        let enough = |a: &&f64| {
+            sum += **a;
+            sum >= share * total
+        };
+        amplitudes.iter().find(enough).copied().unwrap_or(0.0)
+    };
+    match parameters.lines_detail {
+        // What a strong line has: half of all structure lies on lines at least as strong.
+        Some(detail) => reaching(0.5) * libm::pow(FINEST, detail),
+        None => reaching(EXPLAINED),
+    }
+}

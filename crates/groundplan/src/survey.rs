@@ -1,0 +1,141 @@
+//! The stages in a row.
+
+use crate::adjacency::{Adjacency, find_adjacency};
+use crate::arrangement::{Arrangement, arrange};
+use crate::directions::{Directions, find_directions};
+use crate::gradients::{Gradients, find_gradients};
+use crate::grid::Grid;
+use crate::labels::{Evidence, Label, find_labels};
+use crate::lines::{Lines, find_lines};
+use crate::occupancy::{Occupancy, find_occupancy};
+use crate::parameters::Parameters;
+use crate::radiograms::{Radiogram, find_radiograms};
+use crate::subdivision::Subdivision;
+use crate::walls::{Walls, find_walls};
+
+/// Partial trouble: a stable code and a sentence that names the value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// Such as `few-edges`.
+    pub code: &'static str,
+    /// A sentence.
+    pub message: String,
+}
+
+/// What every stage made of a grid.
+#[derive(Clone, Debug)]
+pub struct Survey {
+    /// II-A: oriented gradients.
+    pub gradients: Gradients,
+    /// II-A: dominant directions.
+    pub directions: Directions,
+    /// II-B: one for each direction.
+    pub radiograms: Vec<Radiogram>,
+    /// II-B: lines.
+    pub lines: Lines,
+    /// II-C: half-edges on the lattice.
+    pub arrangement: Arrangement,
+    /// II-C: vertices, edges, faces.
+    pub subdivision: Subdivision,
+    /// II-D: O(face), O(edge).
+    pub occupancy: Occupancy,
+    /// II-D: C(edge) and the abstraction.
+    pub walls: Walls,
+    /// II-D: the dual.
+    pub adjacency: Adjacency,
+    /// II-E: what is what.
+    pub labels: Vec<Label>,
+    /// Partial trouble.
+    pub warnings: Vec<Warning>,
+}
+
+/// Stages' results that are given, not found: how one stage is replaced.
+#[derive(Clone, Debug, Default)]
+pub struct Given {
+    /// In place of II-A.
+    pub directions: Option<Directions>,
+    /// In place of II-B.
+    pub lines: Option<Lines>,
+}
+
+/// Surveys a grid. Total: any grid and parameters give a valid subdivision, at worst one face, and warnings.
+#[must_use]
+pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> Survey {
+    let frame = &grid.frame;
+    let gradients = find_gradients(grid, parameters, threads);
+    let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters));
+    let radiograms = find_radiograms(frame, &gradients, &directions, parameters);
+    let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
+    let arrangement = arrange(frame, &directions.angles, &lines);
+    let subdivision = Subdivision::new(frame, &arrangement);
+    let occupancy = find_occupancy(grid, &arrangement, &directions, &lines, &gradients, parameters, threads);
+    let walls = find_walls(&subdivision, &occupancy, parameters);
+    let adjacency = find_adjacency(&subdivision, &walls);
+    let labels = find_labels(&Evidence {
+        grid,
+        gradients: &gradients,
+        directions: &directions,
+        lines: &lines,
+        arrangement: &arrangement,
+        subdivision: &subdivision,
+        occupancy: &occupancy,
+        walls: &walls,
+        adjacency: &adjacency,
+        parameters,
+        threads,
+    });
+    let warnings = find_warnings(&gradients, &directions, &lines, &labels, parameters);
+    debug_assert_eq!(subdivision.problems(), Vec::<String>::new());
+    debug_assert_eq!(occupancy.pixels.iter().sum::<u64>(), (frame.width * frame.height) as u64);
+    Survey {
+        gradients,
+        directions,
+        radiograms,
+        lines,
+        arrangement,
+        subdivision,
+        occupancy,
+        walls,
+        adjacency,
+        labels,
+        warnings,
+    }
+}
+
+/// Fewer edge pixels than this are no structure.
+const FEW_EDGE_PIXELS: usize = 100;
+/// Less of the structure lined up than this is no ground plan.
+const LITTLE_EXPLAINED: f64 = 0.4;
+
+fn find_warnings(
+    gradients: &Gradients,
+    directions: &Directions,
+    lines: &Lines,
+    labels: &[Label],
+    parameters: &Parameters,
+) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let mut warn = |code, message| warnings.push(Warning { code, message });
+    let edges = gradients.pixels.len();
+    if edges < FEW_EDGE_PIXELS {
+        warn("few-edges", format!("the map has only {edges} edge pixels: nothing much can be said of it"));
+    }
+    if directions.angles.is_empty() {
+        warn("no-structure", "no direction stands out: the map has no straight structure".to_owned());
+    } else if directions.explained < LITTLE_EXPLAINED {
+        let percent = (100.0 * directions.explained).round();
+        warn("little-structure", format!("only {percent} percent of the structure lines up along the directions found"));
+    }
+    if let Some(count) = parameters.directions_count
+        && directions.angles.len() < count
+    {
+        warn("few-directions", format!("{count} directions were asked for and {} found", directions.angles.len()));
+    }
+    if !directions.angles.is_empty() && lines.is_empty() {
+        warn("no-lines", "no line stands out of the radiograms".to_owned());
+    }
+    if !lines.is_empty() && labels.is_empty() {
+        warn("no-labels", "no corridor and no junction was found".to_owned());
+    }
+    warnings
+}

@@ -1,0 +1,194 @@
+//! II-B: peaks by continuous wavelet transform with ridge lines, after Du, Kibbe and Lin (2006).
+
+/// Responses of a signal to Ricker wavelets of several widths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Response {
+    /// Widths (sigma) of the wavelets, bins, ascending.
+    pub widths: Vec<f64>,
+    /// `rows[w][n]`: response to width w at bin n.
+    pub rows: Vec<Vec<f64>>,
+}
+
+/// A peak that holds through several widths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peak {
+    /// Bin of the peak at the narrowest width of its ridge.
+    pub bin: usize,
+    /// Width (sigma) at which the ridge responds most, bins.
+    pub width: f64,
+    /// That greatest response.
+    pub response: f64,
+    /// Greatest response over the noise around.
+    pub snr: f64,
+}
+
+/// Beyond this many sigmas a Ricker wavelet is nothing.
+const REACH_SIGMAS: f64 = 5.0;
+/// Widths from one to the next grow by this factor.
+const WIDTH_FACTOR: f64 = 1.25;
+/// A ridge may miss this many widths in a row.
+const MOST_GAPS: usize = 1;
+/// A ridge holds through at least this many widths, or all when there are fewer.
+const SHORTEST_RIDGE: usize = 3;
+/// A ridge must reach down to one of this many narrowest widths.
+const NARROWEST: usize = 5;
+/// Half the window in which noise is measured, bins.
+const NOISE_BINS: usize = 100;
+
+/// Widths from `low` to `high`, both included, evenly spaced on a logarithmic scale.
+#[must_use]
+pub fn widths(low: f64, high: f64) -> Vec<f64> {
+    let mut all = vec![low];
+    while all[all.len() - 1] * WIDTH_FACTOR < high {
+        all.push(all[all.len() - 1] * WIDTH_FACTOR);
+    }
+    if high > low {
+        all.push(high);
+    }
+    all
+}
+
+/// The continuous wavelet transform of `signal` with Ricker wavelets of unit energy.
+#[must_use]
+pub fn transform(signal: &[f64], widths: &[f64]) -> Response {
+    let rows = widths.iter().map(|&width| convolve(signal, &ricker(width))).collect();
+    Response { widths: widths.to_vec(), rows }
+}
+
+/// Right half of a Ricker wavelet, its middle first.
+fn ricker(sigma: f64) -> Vec<f64> {
+    let norm = 2.0 / ((3.0 * sigma).sqrt() * std::f64::consts::PI.sqrt().sqrt());
+    let reach = (REACH_SIGMAS * sigma).ceil() as usize;
+    let mut half: Vec<f64> = (0..=reach)
+        .map(|n| {
+            let t = (n as f64 / sigma).powi(2);
+            norm * (1.0 - t) * libm::exp(-0.5 * t)
+        })
+        .collect();
+    // A sampled narrow wavelet does not quite sum to zero; a flat signal must give no response.
+    let sum = half[0] + 2.0 * half[1..].iter().sum::<f64>();
+    let weight: f64 = 1.0 + 2.0 * (1..=reach).map(|n| libm::exp(-0.5 * (n as f64 / sigma).powi(2))).sum::<f64>();
+    for (n, value) in half.iter_mut().enumerate() {
+        *value -= sum / weight * libm::exp(-0.5 * (n as f64 / sigma).powi(2));
+    }
+    half
+}
+
+/// Convolution with a symmetric kernel given by its right half; beyond the ends the signal is zero.
+fn convolve(signal: &[f64], half: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; signal.len()];
+    for (n, &value) in signal.iter().enumerate() {
+        if value == 0.0 {
+            continue;
+        }
+        out[n] += value * half[0];
+        for (o, k) in out[n + 1..].iter_mut().zip(&half[1..]) {
+            *o += value * k;
+        }
+        for (o, k) in out[..n].iter_mut().rev().zip(&half[1..]) {
+            *o += value * k;
+        }
+    }
+    out
+}
+
+/// A ridge line: local maxima that follow one another from wide to narrow.
+struct Ridge {
+    bin: usize,
+    points: usize,
+    gaps: usize,
+    row: usize,
+    best: (f64, usize),
+}
+
+/// Peaks whose ridge lines hold through the widths and whose response exceeds the noise around them by `snr`,
+/// in the order of their bins.
+#[must_use]
+pub fn peaks(response: &Response, snr: f64) -> Vec<Peak> {
+    let Some(narrow) = response.rows.first() else { return Vec::new() };
+    let noise = noise(narrow);
+    let shortest = SHORTEST_RIDGE.min(response.rows.len());
+    let mut found: Vec<Peak> = ridges(response)
+        .into_iter()
+        .filter(|ridge| ridge.points >= shortest && ridge.row < NARROWEST)
+        .map(|ridge| {
+            let (value, row) = ridge.best;
+            let floor = noise[ridge.bin].max(f64::MIN_POSITIVE);
+            Peak { bin: ridge.bin, width: response.widths[row], response: value, snr: value / floor }
+        })
+        .filter(|peak| peak.snr >= snr)
+        .collect();
+    found.sort_by_key(|peak| peak.bin);
+    found.dedup_by_key(|peak| peak.bin);
+    found
+}
+
+fn ridges(response: &Response) -> Vec<Ridge> {
+    let mut open: Vec<Ridge> = Vec::new();
+    let mut closed = Vec::new();
+    for row in (0..response.rows.len()).rev() {
+        let values = &response.rows[row];
+        let reach = (response.widths[row] * 0.75).ceil() as usize;
+        let maxima: Vec<usize> = (0..values.len())
+            .filter(|&n| {
+                let left = if n == 0 { 0.0 } else { values[n - 1] };
+                let right = values.get(n + 1).copied().unwrap_or(0.0);
+                values[n] > 0.0 && values[n] > left && values[n] >= right
+            })
+            .collect();
+        let mut free = vec![true; maxima.len()];
+        for ridge in &mut open {
+            // The nearest maximum continues the ridge; the others start ridges of their own.
+            let after = maxima.partition_point(|&n| n < ridge.bin);
+            let near = [after.checked_sub(1), Some(after)].into_iter().flatten().filter(|&m| m < maxima.len());
+            let nearest = near.filter(|&m| free[m]).min_by_key(|&m| maxima[m].abs_diff(ridge.bin));
+            match nearest.filter(|&m| maxima[m].abs_diff(ridge.bin) <= reach) {
+                Some(m) => {
+                    free[m] = false;
+                    (ridge.bin, ridge.row, ridge.gaps) = (maxima[m], row, 0);
+                    ridge.points += 1;
+                    if values[maxima[m]] > ridge.best.0 {
+                        ridge.best = (values[maxima[m]], row);
+                    }
+                }
+                None => ridge.gaps += 1,
+            }
+        }
+        let (ended, going): (Vec<Ridge>, Vec<Ridge>) = open.into_iter().partition(|ridge| ridge.gaps > MOST_GAPS);
+        closed.extend(ended);
+        open = going;
+        open.extend(maxima.iter().zip(&free).filter(|(_, free)| **free).map(|(&bin, _)| Ridge {
+            bin,
+            points: 1,
+            gaps: 0,
+            row,
+            best: (values[bin], row),
+        }));
+        open.sort_by_key(|ridge| ridge.bin);
+    }
+    closed.extend(open);
+    closed
+}
+
+/// Noise at each bin: the median of the narrowest response's magnitude around it. Where most of the surroundings are
+/// empty, the median of all that is not stands in.
+fn noise(narrow: &[f64]) -> Vec<f64> {
+    let magnitudes: Vec<f64> = narrow.iter().map(|v| v.abs()).collect();
+    let median = |values: &mut [f64]| {
+        let middle = values.len() / 2;
+        *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    };
+    let mut some: Vec<f64> = magnitudes.iter().copied().filter(|v| *v > 0.0).collect();
+    let least = if some.is_empty() { 0.0 } else { 0.25 * median(&mut some) };
+    // One window serves all bins of its middle half: noise does not change from bin to bin.
+    let stride = NOISE_BINS / 2;
+    (0..magnitudes.len())
+        .step_by(stride)
+        .flat_map(|start| {
+            let from = start.saturating_sub(NOISE_BINS);
+            let to = (start + NOISE_BINS).min(magnitudes.len());
+            let level = median(&mut magnitudes[from..to].to_vec()).max(least);
+            std::iter::repeat_n(level, stride.min(magnitudes.len() - start))
+        })
+        .collect()
+}

@@ -1,0 +1,204 @@
+"""The YAML of ROS map_server: what it says about an image, checked field by field.
+
+Source: ros-navigation/navigation2 ``nav2_map_server/src/map_io.cpp``. Nav2 refuses a YAML without thresholds or
+`negate`; here what map_saver writes is taken for them, with a warning.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
+
+from groundplan._errors import MapError
+from groundplan.maps._dialects import FREE_THRESH, MODES, OCCUPIED_THRESH, Mode
+from groundplan.maps._map import MapWarning
+from groundplan.maps.image import open_file
+
+Origin = tuple[float, float, float]
+
+#: A YAML of a map has a few hundred bytes; what is larger is something else.
+LARGEST_YAML = 1 << 20
+
+#: Metres a pixel, and metres from the frame's origin, beyond which a value is a slip and floats lose the centimetre.
+SMALLEST_RESOLUTION, LARGEST_RESOLUTION, FARTHEST_ORIGIN = 1e-6, 1e4, 1e9
+
+
+@dataclass(frozen=True)
+class Described:
+    """What a YAML says. `None` where it says nothing."""
+
+    image: Path
+    resolution: float | None
+    origin: Origin | None
+    negate: bool | None
+    mode: Mode | None
+    occupied_thresh: float | None
+    free_thresh: float | None
+    warnings: tuple[MapWarning, ...] = ()
+
+
+def read_yaml(path: Path) -> Described:
+    """Read a map_server YAML.
+
+    Raises
+    ------
+    MapError
+        ``map.missing``, ``map.directory``, ``map.unreadable``, ``map.empty``, ``map.yaml``, ``map.image``,
+        ``map.resolution``, ``map.origin``, ``map.negate``, ``map.mode``, ``map.thresholds``.
+    """
+    fields = _mapping(path)
+    image, beside = _image(path, fields)
+    warnings = list(beside)
+    origin = None
+    if "origin" in fields:
+        origin, odd = check_origin(fields["origin"], str(path), exactly=3)
+        warnings += odd
+    negate = _negate(path, fields["negate"]) if "negate" in fields else None
+    mode = check_mode(fields["mode"], str(path)) if "mode" in fields else None
+    occupied, free = (
+        check_threshold(fields[name], name, str(path)) if name in fields else None
+        for name in ("occupied_thresh", "free_thresh")
+    )
+    assumed = {"negate": "0", "occupied_thresh": str(OCCUPIED_THRESH), "free_thresh": str(FREE_THRESH)}
+    missing = [name for name in assumed if name not in fields]
+    if missing:
+        said = " and ".join(f"{name} {assumed[name]}" for name in missing)
+        warnings.append(
+            MapWarning("fields-missing", f"{path.name} does not state {', '.join(missing)}: assumed {said}")
+        )
+    resolution = check_resolution(fields["resolution"], str(path)) if "resolution" in fields else None
+    return Described(image, resolution, origin, negate, mode, occupied, free, tuple(warnings))
+
+
+def check_resolution(value: object, where: str) -> float:
+    """Metres a pixel, or ``map.resolution``."""
+    metres = number(value)
+    if metres is None or not SMALLEST_RESOLUTION <= metres <= LARGEST_RESOLUTION:
+        raise MapError(
+            "map.resolution",
+            f"{where}: resolution {shown(value)} is not a number of metres a pixel between "
+            f"{SMALLEST_RESOLUTION:g} and {LARGEST_RESOLUTION:g}",
+            "--resolution sets it, such as --resolution 0.05",
+        )
+    return metres
+
+
+def check_origin(value: object, where: str, *, exactly: int | None = None) -> tuple[Origin, list[MapWarning]]:
+    """Pose of the lower left corner, or ``map.origin``; a yaw that is not a number is 0, with a warning."""
+    length = f"{exactly} numbers" if exactly else "2 or 3 numbers"
+    parts = list(value) if isinstance(value, Sequence) and not isinstance(value, str | bytes) else None
+    if hasattr(value, "tolist"):
+        parts = cast("list[object]", value.tolist())
+    if not isinstance(parts, list) or len(parts) not in ((exactly,) if exactly else (2, 3)):
+        raise MapError("map.origin", f"{where}: origin {shown(value)} is not {length}: x, y, yaw")
+    x, y, yaw = (number(part) for part in [*parts, 0.0][:3])
+    if x is None or y is None or not (abs(x) <= FARTHEST_ORIGIN and abs(y) <= FARTHEST_ORIGIN):
+        raise MapError(
+            "map.origin",
+            f"{where}: origin {shown(value)} is not a place: x and y are metres within {FARTHEST_ORIGIN:g} of 0",
+        )
+    if yaw is None or abs(yaw) > FARTHEST_ORIGIN:
+        raise MapError("map.origin", f"{where}: origin has the yaw {shown(parts[-1])}, which is no angle in radians")
+    if math.isnan(yaw):
+        return (x, y, 0.0), [MapWarning("yaw-nan", f"the yaw of the origin in {Path(where).name} is nan: read as 0")]
+    return (x, y, yaw), []
+
+
+def check_threshold(value: object, name: str, where: str) -> float:
+    """A share between 0 and 1, or ``map.thresholds``."""
+    share = number(value)
+    if share is None or not 0.0 <= share <= 1.0:
+        raise MapError("map.thresholds", f"{where}: {name} {shown(value)} is not a number between 0 and 1")
+    return share
+
+
+def check_mode(value: object, where: str) -> Mode:
+    """One of the three modes, or ``map.mode``."""
+    mode = str(value).lower()
+    for known in MODES:
+        if mode == known:
+            return known
+    raise MapError("map.mode", f"{where}: mode {shown(value)} is none of {', '.join(MODES)}")
+
+
+def number(value: object) -> float | None:
+    """A finite, infinite or nan float from what YAML or a caller gives; None if it is no number.
+
+    YAML 1.1 takes 5e-2 and -nan for text; they are the numbers that C++ writes.
+    """
+    if isinstance(value, bool) or value is None:
+        return None
+    try:
+        return float(str(value).strip().lower().replace(".nan", "nan").replace(".inf", "inf"))
+    except ValueError:
+        return None
+
+
+def shown(value: object) -> str:
+    """A value in a sentence, cut if it is long."""
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of thousands of digits
+        return "of too many digits"
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _mapping(path: Path) -> dict[str, object]:
+    """The YAML's keys and values."""
+    import yaml
+
+    with open_file(path) as file:
+        data = file.read(LARGEST_YAML + 1)
+    if not data.strip():
+        raise MapError("map.empty", f"{path} is empty")
+    if len(data) > LARGEST_YAML:
+        raise MapError("map.yaml", f"{path} is not a map_server YAML: it has more than {LARGEST_YAML} bytes")
+    try:
+        fields = yaml.safe_load(data.decode("utf-8-sig"))
+    except UnicodeDecodeError as fault:
+        raise MapError(
+            "map.yaml", f"{path} is not UTF-8 text: byte {data[fault.start]:#04x} at {fault.start}"
+        ) from fault
+    except (yaml.YAMLError, ValueError, RecursionError) as fault:
+        # ValueError: a date or a number that YAML recognises but cannot be.
+        mark = getattr(fault, "problem_mark", None)
+        line = f", line {mark.line + 1}" if mark is not None else ""
+        problem = getattr(fault, "problem", None) or "it cannot be parsed"
+        raise MapError("map.yaml", f"{path} is not YAML{line}: {problem}") from fault
+    if not isinstance(fields, dict):
+        raise MapError("map.yaml", f"{path} is not a map_server YAML: it holds no keys such as image and resolution")
+    return {str(key): value for key, value in fields.items()}
+
+
+def _image(path: Path, fields: dict[str, object]) -> tuple[Path, list[MapWarning]]:
+    """The image's path. One that was absolute on another computer is looked for beside the YAML."""
+    name = fields.get("image")
+    if not isinstance(name, str) or not name or "\0" in name:
+        said = f"image {shown(name)} is no file name" if "image" in fields else "it names no image"
+        raise MapError("map.image", f"{path} is not a map_server YAML: {said}")
+    image = path.parent / name
+    beside = path.parent / name.replace("\\", "/").rsplit("/", 1)[-1]
+    try:
+        if image.exists():
+            return image, []
+        if beside.is_file():
+            said = f"{path.name} names the image {name}, which does not exist; read the {beside.name} beside it"
+            return beside, [MapWarning("image-beside", said)]
+    except OSError:
+        return image, []  # no permission, or a name too long: opening it says so
+    raise MapError("map.missing", f"{path} names the image {name}, and {image} does not exist")
+
+
+def _negate(path: Path, value: object) -> bool:
+    """Nav2 takes an int or a bool."""
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, str) and value.lower() in ("true", "false", "yes", "no", "on", "off"):
+        return value.lower() in ("true", "yes", "on")
+    whole = number(value)
+    if whole not in (0.0, 1.0):
+        raise MapError("map.negate", f"{path}: negate {shown(value)} is neither 0 nor 1")
+    return whole == 1.0

@@ -1,0 +1,72 @@
+"""The options of a simulated warehouse, each with its default, range and sentence."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import Any
+
+from groundplan._errors import ParameterError
+
+SIDES = ("south", "east", "north", "west")
+
+
+def _option(default: Any, text: str, **more: Any) -> Any:
+    """A dataclass field with its sentence; `least` and `most` bound a number, `unit` stands in the help."""
+    return dataclasses.field(default=default, metadata={"help": text, **more})
+
+
+@dataclass(frozen=True)
+class WarehouseOptions:
+    """What a simulated warehouse is like. Each field's metadata holds its help, unit and range.
+
+    Raises
+    ------
+    ParameterError
+        ``simulate.range`` for a value out of its range, ``simulate.side`` for an unknown side,
+        ``simulate.disconnected`` when no cross aisle joins the aisles, ``simulate.small`` when nothing fits.
+    """
+
+    width: float = _option(42.0, "Length of the hall along its rack rows.", unit="m", least=12.0, most=120.0)
+    depth: float = _option(28.0, "Length of the hall across its rack rows.", unit="m", least=10.0, most=120.0)
+    yaw: float = _option(0.0, "Angle of the rack rows in the map.", unit="deg", least=-360.0, most=360.0)
+    skew: float = _option(
+        0.0, "How far the cross aisles lean from square to the rows.", unit="deg", least=-35.0, most=35.0
+    )
+    aisle: float = _option(3.0, "Width of the aisles, about.", unit="m", least=1.8, most=8.0)
+    cross_aisle: float = _option(3.4, "Width of the cross aisles.", unit="m", least=1.8, most=8.0)
+    cross_aisles: int = _option(1, "Cross aisles between those along the walls.", least=0, most=12)
+    bay: float = _option(2.7, "Pitch of the racks' posts, about.", unit="m", least=1.0, most=6.0)
+    rack_depth: float = _option(1.1, "Depth of a rack.", unit="m", least=0.4, most=3.0)
+    sparse: float = _option(0.1, "Share of bays that are empty.", least=0.0, most=1.0)
+    clutter: float = _option(
+        0.4, "Things left on the floor: pallets, boxes, poles.", unit="per 10 m of aisle", least=0.0, most=10.0
+    )
+    drift: float = _option(0.02, "Error of the robot's poses that bends and doubles.", unit="m", least=0.0, most=1.0)
+    partial: float = _option(0.0, "Share of the ways that the robot does not drive.", least=0.0, most=0.9)
+    closed_sides: tuple[str, ...] = _option(
+        (), "Sides without an aisle along the wall: south, east, north, west.", choices=SIDES
+    )
+    lidar_range: float = _option(15.0, "Greatest range of the lidar.", unit="m", least=2.0, most=100.0)
+    beams: int = _option(600, "Beams in a full turn of the lidar.", least=60, most=7200)
+    noise: float = _option(0.012, "Deviation of a measured range.", unit="m", least=0.0, most=0.5)
+    scan_every: float = _option(0.4, "Way driven between two scans.", unit="m", least=0.05, most=5.0)
+    resolution: float = _option(0.05, "Side of a pixel.", unit="m", least=0.01, most=0.5)
+
+    def __post_init__(self) -> None:
+        """Hold every value to its range."""
+        for item in dataclasses.fields(self):
+            value = getattr(self, item.name)
+            if "least" in item.metadata:
+                least, most = item.metadata["least"], item.metadata["most"]
+                if not least <= value <= most:  # also catches NaN
+                    raise ParameterError("simulate.range", f"{item.name} is {value}, not in {least} .. {most}")
+        for side in self.closed_sides:
+            if side not in SIDES:
+                raise ParameterError("simulate.side", f"closed_sides has {side!r}, not one of {', '.join(SIDES)}")
+        if {"east", "west"} <= set(self.closed_sides) and not self.cross_aisles:
+            raise ParameterError(
+                "simulate.disconnected",
+                "east and west are closed and cross_aisles is 0: nothing joins the aisles",
+                "leave one of the two sides open, or ask for a cross aisle",
+            )

@@ -1,0 +1,371 @@
+"""The method's stages, each a pure function, and what each makes.
+
+    find_gradients -> find_directions -> find_radiograms -> find_lines -> subdivide -> find_occupancy
+        -> find_walls -> find_adjacency
+
+``groundplan.survey()`` is these in a row, with labels at the end. A researcher replaces one of them and hands its
+result to ``groundplan.survey(map, directions=..., lines=...)``. Lengths are metres, angles radians, points in the map
+frame; an id that is none (the line of a border edge, the face outside) is `NONE`. Section numbers are those of
+Gholami Shahbandi, Åstrand and Philippsen (ICARCV 2014).
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, fields
+from typing import Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from groundplan import _core
+from groundplan.maps import Map
+from groundplan.parameters import named
+
+Floats = npt.NDArray[np.float64]
+Ids = npt.NDArray[np.uint32]
+SignedIds = npt.NDArray[np.int32]
+Flags = npt.NDArray[np.bool_]
+
+#: No id.
+NONE = -1
+
+
+class Stage:
+    """What a stage made: a record of arrays. Equal when every array is."""
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        mine = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))  # type: ignore[arg-type]
+        return all(np.array_equal(a, b) for a, b in mine)
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True, eq=False)
+class Gradients(Stage):
+    """II-A: edge pixels (occupied, with a 4-neighbour that is not) and the gradient at each.
+
+    Attributes
+    ----------
+    pixels : (N, 2) uint32
+        Column, and row from the bottom.
+    angles : (N,) float32
+        Direction along the wall on the grid; the gradient is perpendicular to it.
+    magnitudes : (N,) uint8
+        0 (no direction: a speck, a post) to 255 (a straight wall).
+    """
+
+    pixels: Ids
+    angles: npt.NDArray[np.float32]
+    magnitudes: npt.NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False)
+class Directions(Stage):
+    """II-A: the dominant directions, strongest first.
+
+    Attributes
+    ----------
+    angles : (D,) float64
+        Of the lines themselves, in [-pi/2, pi/2).
+    weights : (D,) float64
+        Structure that lines up along each, as a share of the strongest's.
+    histogram : (B,) float64
+        The evidence: histogram of oriented gradients from -pi/2 to pi/2, weighted by magnitude.
+    explained : float
+        Share of the edge pixels' length that lines up along the directions, 0 to 1.
+    """
+
+    angles: Floats
+    weights: Floats
+    histogram: Floats
+    explained: float
+
+    def __len__(self) -> int:
+        return len(self.angles)
+
+    @classmethod
+    def of(cls, angles: npt.ArrayLike) -> Directions:
+        """Directions of your own, angles in radians."""
+        own = np.atleast_1d(np.asarray(angles, dtype=np.float64))
+        return cls((own + np.pi / 2) % np.pi - np.pi / 2, np.ones(len(own)), np.zeros(0), 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Radiogram(Stage):
+    """II-B: how much structure lies at each offset across one direction.
+
+    Attributes
+    ----------
+    direction : int
+        Index of the direction.
+    start, step : float
+        Offset of the first value along the normal (-sin, cos), and from one to the next, metres.
+    values : (N,) float64
+        Metres of structure.
+    """
+
+    direction: int
+    start: float
+    step: float
+    values: Floats
+
+    @property
+    def offsets(self) -> Floats:
+        """Offset of each value, metres."""
+        return self.start + self.step * np.arange(len(self.values))
+
+
+@dataclass(frozen=True, eq=False)
+class Response(Stage):
+    """II-B: responses of a radiogram to Ricker wavelets (Du, Kibbe and Lin 2006).
+
+    Attributes
+    ----------
+    widths : (W,) float64
+        Sigma of each wavelet, metres.
+    rows : (W, N) float64
+        Response at each width and offset.
+    """
+
+    widths: Floats
+    rows: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Lines(Stage):
+    """II-B: lines n.p = offset with n = (-sin angle, cos angle), by direction and offset.
+
+    Attributes
+    ----------
+    directions : (L,) uint32
+        Index of each line's direction.
+    offsets : (L,) float64
+        Metres.
+    amplitudes : (L,) float64
+        Metres of structure lying on it.
+    widths : (L,) float64
+        Width (sigma) of its peak, metres.
+    min_amplitude : float
+        Least amplitude let through: what the resolution knob came to.
+    """
+
+    directions: Ids
+    offsets: Floats
+    amplitudes: Floats
+    widths: Floats
+    min_amplitude: float
+
+    def __len__(self) -> int:
+        return len(self.offsets)
+
+    @classmethod
+    def of(cls, directions: npt.ArrayLike, offsets: npt.ArrayLike) -> Lines:
+        """Lines of your own: the index of the direction and the offset in metres of each."""
+        own = np.atleast_1d(np.asarray(offsets, dtype=np.float64))
+        return cls(np.atleast_1d(np.asarray(directions, dtype=np.uint32)), own, np.ones(len(own)), np.zeros(len(own)), 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Subdivision(Stage):
+    """II-C: what the lines cut the map into. Ragged lists are values with offsets.
+
+    Attributes
+    ----------
+    vertices : (V, 2) float64
+    edge_vertices : (E, 2) uint32
+    edge_lines : (E,) int32
+        `NONE` on the border.
+    edge_faces : (E, 2) int32
+        N(edge): left and right, seen from the first vertex to the second; `NONE` outside.
+    face_vertices, face_edges : (sum of sides,) uint32
+        Counter-clockwise; the n-th edge joins the n-th vertex and the next.
+    face_offsets : (F + 1,) uint32
+        Face f has the entries from ``face_offsets[f]`` to ``face_offsets[f + 1]``.
+    centres : (F, 2) float64
+    areas : (F,) float64
+    map_area : float
+    """
+
+    vertices: Floats
+    edge_vertices: Ids
+    edge_lines: SignedIds
+    edge_faces: SignedIds
+    face_vertices: Ids
+    face_edges: Ids
+    face_offsets: Ids
+    centres: Floats
+    areas: Floats
+    map_area: float
+
+    def polygon(self, face: int) -> Floats:
+        """Vertices of a face, (N, 2), counter-clockwise."""
+        return self.vertices[self.face_vertices[self.face_offsets[face] : self.face_offsets[face + 1]]]
+
+    def problems(self) -> list[str]:
+        """Every broken invariant, as sentences; an empty list when all hold."""
+        return _core.problems(record(self))
+
+
+@dataclass(frozen=True, eq=False)
+class Occupancy(Stage):
+    """II-D: O(face), O(edge).
+
+    Attributes
+    ----------
+    faces : (F,) float64
+        Average occupancy of the face's pixels; unknown pixels count 0.5.
+    unknown, free : (F,) float64
+        Share of unknown and of free pixels.
+    pixels : (F,) uint64
+        Pixels with their centre in the face; together all of the map's.
+    states : (F,) uint8
+        0 free, 1 occupied, 2 unknown.
+    edges : (E,) float64
+        Share of the edge's length on which occupied pixels lie; 0 on the border.
+    """
+
+    faces: Floats
+    unknown: Floats
+    free: Floats
+    pixels: npt.NDArray[np.uint64]
+    states: npt.NDArray[np.uint8]
+    edges: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Walls(Stage):
+    """II-D: cogency, and the abstraction that the cogent edges make.
+
+    Attributes
+    ----------
+    cogent : (E,) bool
+        C(edge).
+    disparity : (E,) float64
+        |O(f1) - O(f2)|.
+    points : (2 W, 2) float64
+        Two ends of each wall.
+    lines : (W,) uint32
+    freestanding : (W,) bool
+        Else separating.
+    """
+
+    cogent: Flags
+    disparity: Floats
+    points: Floats
+    lines: Ids
+    freestanding: Flags
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+
+@dataclass(frozen=True, eq=False)
+class Adjacency(Stage):
+    """II-D, II-E: the dual.
+
+    Attributes
+    ----------
+    faces : (K, 2) uint32
+        Of each link.
+    edges : (K,) uint32
+        That each link crosses.
+    connected : (K,) bool
+        C(link) = not C(edge).
+    """
+
+    faces: Ids
+    edges: Ids
+    connected: Flags
+
+    def __len__(self) -> int:
+        return len(self.edges)
+
+
+S = TypeVar("S", bound=Stage)
+
+
+def made(kind: type[S], arrays: dict[str, Any]) -> S:
+    """A stage's record from what the core gave."""
+    return kind(**arrays)
+
+
+def record(stage: Stage) -> dict[str, Any]:
+    """A stage's arrays as the core takes them, not copied."""
+    return {f.name: getattr(stage, f.name) for f in fields(stage)}  # type: ignore[arg-type]
+
+
+def layout(map: Map) -> _core.Layout:
+    """A map as the core takes it, without copying its pixels where their rows follow one another."""
+    pixels = map.pixels
+    bottom_up = pixels.ndim == 2 and pixels.strides[0] < 0
+    rows = pixels[::-1] if bottom_up else pixels
+    return np.ascontiguousarray(rows), bottom_up, map.values, map.states, map.resolution, map.origin
+
+
+def cores() -> int:
+    """Threads to use when none are asked for: the cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def find_gradients(map: Map, *, threads: int | None = None, **parameters: Any) -> Gradients:
+    """II-A: oriented gradients of the edge pixels."""
+    return made(Gradients, _core.find_gradients(layout(map), named(parameters), threads or cores()))
+
+
+def find_directions(map: Map, gradients: Gradients | None = None, **parameters: Any) -> Directions:
+    """II-A: the dominant directions, found in number and angle unless ``directions_count`` or
+    ``directions_angles_deg`` are given."""
+    gradients = gradients or find_gradients(map, **parameters)
+    return made(Directions, _core.find_directions(layout(map), record(gradients), named(parameters)))
+
+
+def find_radiograms(
+    map: Map, directions: Directions, gradients: Gradients | None = None, **parameters: Any
+) -> list[Radiogram]:
+    """II-B: the radiogram of each direction."""
+    gradients = gradients or find_gradients(map, **parameters)
+    found = _core.find_radiograms(layout(map), record(gradients), record(directions), named(parameters))
+    return [made(Radiogram, arrays) for arrays in found]
+
+
+def find_response(radiogram: Radiogram, **parameters: Any) -> Response:
+    """II-B: the wavelet response that a radiogram's peaks are read from."""
+    return made(Response, _core.find_response(record(radiogram), named(parameters)))
+
+
+def find_lines(radiograms: list[Radiogram], **parameters: Any) -> Lines:
+    """II-B: the radiograms' peaks as lines."""
+    return made(Lines, _core.find_lines([record(r) for r in radiograms], named(parameters)))
+
+
+def subdivide(map: Map, directions: Directions, lines: Lines) -> Subdivision:
+    """II-C: vertices, edges and faces of all lines taken across the map."""
+    return made(Subdivision, _core.subdivide(layout(map), record(directions), record(lines)))
+
+
+def find_occupancy(
+    map: Map,
+    directions: Directions,
+    lines: Lines,
+    gradients: Gradients | None = None,
+    *,
+    threads: int | None = None,
+    **parameters: Any,
+) -> Occupancy:
+    """II-D: O(face) and O(edge) of the subdivision that the lines make."""
+    gradients = gradients or find_gradients(map, threads=threads, **parameters)
+    stages = record(gradients), record(directions), record(lines)
+    return made(Occupancy, _core.find_occupancy(layout(map), *stages, named(parameters), threads or cores()))
+
+
+def find_walls(subdivision: Subdivision, occupancy: Occupancy, **parameters: Any) -> Walls:
+    """II-D: C(edge) = disparity > t1 or O(edge) > t2, and the walls."""
+    return made(Walls, _core.find_walls(record(subdivision), record(occupancy), named(parameters)))
+
+
+def find_adjacency(subdivision: Subdivision, walls: Walls) -> Adjacency:
+    """II-D, II-E: a node for each face, a link for each edge between two faces."""
+    return made(Adjacency, _core.find_adjacency(record(subdivision), record(walls)))

@@ -1,0 +1,386 @@
+"""The Survey: what every stage made of a map, as arrays, as JSON, as a graph and as geometries."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from groundplan import _core
+from groundplan._errors import FormatError, GroundplanError
+from groundplan._files import write_text
+from groundplan.maps import Map, MapWarning, from_array
+from groundplan.parameters import named
+from groundplan.stages import (
+    Adjacency,
+    Directions,
+    Lines,
+    Occupancy,
+    Radiogram,
+    Stage,
+    Subdivision,
+    Walls,
+    cores,
+    layout,
+    made,
+    record,
+)
+
+if TYPE_CHECKING:
+    import networkx
+
+FORMAT, VERSION = "groundplan-survey", 1
+STATES = ("free", "occupied", "unknown")
+
+#: A label: ``kind`` and the keys that the survey's format gives that kind. Plain values, as in the JSON.
+Label = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class MapInfo:
+    """The surveyed map's block: image name, size in pixels, metres per pixel, origin (m, m, rad)."""
+
+    image: str
+    width: int
+    height: int
+    resolution: float
+    origin: tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Survey(Stage):
+    """What every stage made of a map; the evidence is kept.
+
+    Attributes
+    ----------
+    map : MapInfo
+    parameters : dict
+        Every one in force, defaults too; None where the value found itself.
+    directions, radiograms, lines, subdivision, occupancy, walls, adjacency
+        As `groundplan.stages` describes them.
+    labels : list of dict
+        Corridors, junctions: ``kind`` and its keys; an id is a position in this list.
+    warnings : list of MapWarning
+        Partial trouble, the map's own first.
+    """
+
+    map: MapInfo
+    parameters: dict[str, Any]
+    directions: Directions
+    radiograms: list[Radiogram]
+    lines: Lines
+    subdivision: Subdivision
+    occupancy: Occupancy
+    walls: Walls
+    adjacency: Adjacency
+    labels: list[Label]
+    warnings: list[MapWarning] = field(default_factory=list)
+
+    def problems(self) -> list[str]:
+        """Every broken invariant of the subdivision and its pixels, as sentences; an empty list when all hold."""
+        found = self.subdivision.problems()
+        pixels, expected = int(self.occupancy.pixels.sum()), self.map.width * self.map.height
+        if pixels != expected:
+            found.append(f"the faces hold {pixels} pixels and the map {expected}")
+        return found
+
+    def of_kind(self, kind: str) -> list[Label]:
+        """The labels of one kind, such as ``corridor``."""
+        return [label for label in self.labels if label["kind"] == kind]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The survey as the format has it: plain lists and numbers."""
+        cut, dual = self.subdivision, self.adjacency
+        ragged = np.split(cut.face_vertices, cut.face_offsets[1:-1]), np.split(cut.face_edges, cut.face_offsets[1:-1])
+        faces = [[part.tolist() for part in parts[: len(cut.areas)]] for parts in ragged]
+        lines = [None if line < 0 else line for line in cut.edge_lines.tolist()]
+        sides = [[None if f < 0 else f for f in pair] for pair in cut.edge_faces.tolist()]
+        kinds = ["freestanding" if free else "separating" for free in self.walls.freestanding.tolist()]
+        return {
+            "format": FORMAT,
+            "version": VERSION,
+            "map": {f.name: getattr(self.map, f.name) for f in fields(self.map)} | {"origin": list(self.map.origin)},
+            "parameters": self.parameters,
+            "directions": rows(angle=self.directions.angles, weight=self.directions.weights),
+            "lines": rows(
+                direction=self.lines.directions,
+                offset=self.lines.offsets,
+                amplitude=self.lines.amplitudes,
+                width=self.lines.widths,
+            ),
+            "vertices": cut.vertices.tolist(),
+            "edges": rows(
+                vertices=cut.edge_vertices,
+                line=lines,
+                faces=sides,
+                occupancy=self.occupancy.edges,
+                disparity=self.walls.disparity,
+                cogent=self.walls.cogent,
+            ),
+            "faces": rows(
+                vertices=faces[0],
+                edges=faces[1],
+                centre=cut.centres,
+                area=cut.areas,
+                occupancy=self.occupancy.faces,
+                unknown=self.occupancy.unknown,
+                free=self.occupancy.free,
+                pixels=self.occupancy.pixels,
+                state=[STATES[state] for state in self.occupancy.states.tolist()],
+            ),
+            "links": rows(faces=dual.faces, edge=dual.edges, connected=dual.connected),
+            "walls": rows(points=self.walls.points.reshape(-1, 2, 2), line=self.walls.lines, kind=kinds),
+            "labels": self.labels,
+            "warnings": [{"code": w.code, "message": w.message} for w in self.warnings],
+            "evidence": {
+                "histogram": self.directions.histogram.tolist(),
+                "explained": self.directions.explained,
+                "min_amplitude": self.lines.min_amplitude,
+                "radiograms": [
+                    {"direction": r.direction, "start": r.start, "step": r.step, "values": r.values.tolist()}
+                    for r in self.radiograms
+                ],
+            },
+        }
+
+    def to_json(self) -> str:
+        """The survey as JSON, a line for each part; the same survey gives the same bytes."""
+        parts = (f"{json.dumps(key)}: {dump(value)}" for key, value in self.to_dict().items())
+        return "{\n" + ",\n".join(parts) + "\n}\n"
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Write the JSON, whole or not at all."""
+        write_text(path, self.to_json())
+
+    @classmethod
+    def from_json(cls, text: str | bytes) -> Survey:
+        """The survey that `to_json` wrote.
+
+        Raises
+        ------
+        FormatError
+            ``survey.json`` when it is not JSON, ``survey.format`` or ``survey.version`` when it is something else,
+            ``survey.content`` when a part is missing or has the wrong shape.
+        """
+        try:
+            tree = json.loads(text)
+        except (ValueError, RecursionError) as fault:
+            raise FormatError("survey.json", f"the survey is not JSON: {fault}") from fault
+        if not isinstance(tree, dict) or tree.get("format") != FORMAT:
+            name = tree.get("format") if isinstance(tree, dict) else None
+            raise FormatError("survey.format", f"the format is {name!r} and not {FORMAT!r}")
+        if tree.get("version") != VERSION:
+            raise FormatError("survey.version", f"version {tree.get('version')!r} of the format is not known, {VERSION} is")
+        try:
+            return cls._from_tree(tree)
+        except (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError) as fault:
+            raise FormatError("survey.content", f"the survey is not whole: {type(fault).__name__} {fault}") from fault
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Survey:
+        """A survey from its file.
+
+        Raises
+        ------
+        FormatError
+            ``survey.read`` when the file cannot be read, else as `from_json`.
+        """
+        try:
+            return cls.from_json(Path(path).read_bytes())
+        except OSError as fault:
+            raise FormatError("survey.read", f"cannot read {os.fspath(path)}: {fault.strerror}") from fault
+
+    @classmethod
+    def _from_tree(cls, tree: dict[str, Any]) -> Survey:
+        frame, evidence, faces, edges = tree["map"], tree["evidence"], tree["faces"], tree["edges"]
+        x, y, yaw = (float(value) for value in frame["origin"])
+        info = MapInfo(frame["image"], frame["width"], frame["height"], float(frame["resolution"]), (x, y, yaw))
+        offsets = np.cumsum([0, *(len(face["vertices"]) for face in faces)], dtype=np.uint32)
+        return cls(
+            map=info,
+            parameters=tree["parameters"],
+            directions=Directions(
+                column(tree["directions"], "angle", np.float64),
+                column(tree["directions"], "weight", np.float64),
+                np.array(evidence["histogram"], dtype=np.float64),
+                float(evidence["explained"]),
+            ),
+            radiograms=[
+                Radiogram(r["direction"], r["start"], r["step"], np.array(r["values"], dtype=np.float64))
+                for r in evidence["radiograms"]
+            ],
+            lines=Lines(
+                column(tree["lines"], "direction", np.uint32),
+                column(tree["lines"], "offset", np.float64),
+                column(tree["lines"], "amplitude", np.float64),
+                column(tree["lines"], "width", np.float64),
+                float(evidence["min_amplitude"]),
+            ),
+            subdivision=Subdivision(
+                vertices=np.array(tree["vertices"], dtype=np.float64).reshape(-1, 2),
+                edge_vertices=column(edges, "vertices", np.uint32).reshape(-1, 2),
+                edge_lines=np.array([-1 if e["line"] is None else e["line"] for e in edges], dtype=np.int32),
+                edge_faces=np.array(
+                    [[-1 if f is None else f for f in e["faces"]] for e in edges], dtype=np.int32
+                ).reshape(-1, 2),
+                face_vertices=np.array([v for face in faces for v in face["vertices"]], dtype=np.uint32),
+                face_edges=np.array([e for face in faces for e in face["edges"]], dtype=np.uint32),
+                face_offsets=offsets,
+                centres=column(faces, "centre", np.float64).reshape(-1, 2),
+                areas=column(faces, "area", np.float64),
+                map_area=info.width * info.height * info.resolution**2,
+            ),
+            occupancy=Occupancy(
+                faces=column(faces, "occupancy", np.float64),
+                unknown=column(faces, "unknown", np.float64),
+                free=column(faces, "free", np.float64),
+                pixels=column(faces, "pixels", np.uint64),
+                states=np.array([STATES.index(face["state"]) for face in faces], dtype=np.uint8),
+                edges=column(edges, "occupancy", np.float64),
+            ),
+            walls=Walls(
+                cogent=column(edges, "cogent", np.bool_),
+                disparity=column(edges, "disparity", np.float64),
+                points=column(tree["walls"], "points", np.float64).reshape(-1, 2),
+                lines=column(tree["walls"], "line", np.uint32),
+                freestanding=np.array([w["kind"] == "freestanding" for w in tree["walls"]], dtype=np.bool_),
+            ),
+            adjacency=Adjacency(
+                faces=column(tree["links"], "faces", np.uint32).reshape(-1, 2),
+                edges=column(tree["links"], "edge", np.uint32),
+                connected=column(tree["links"], "connected", np.bool_),
+            ),
+            labels=tree["labels"],
+            warnings=[MapWarning(w["code"], w["message"]) for w in tree["warnings"]],
+        )
+
+    def to_networkx(self) -> networkx.Graph[int]:
+        """The adjacency graph: a node for each face, with its centre, area, occupancy and state, and an edge for each
+        link, with its edge's id and ``connected``. Two faces meet in one edge at most. Needs networkx."""
+        nx = needed("networkx", "graph")
+        graph = nx.Graph()
+        for face, (centre, area) in enumerate(zip(self.subdivision.centres.tolist(), self.subdivision.areas, strict=True)):
+            graph.add_node(
+                face,
+                centre=tuple(centre),
+                area=float(area),
+                occupancy=float(self.occupancy.faces[face]),
+                state=STATES[self.occupancy.states[face]],
+            )
+        dual = self.adjacency
+        for (a, b), edge, connected in zip(dual.faces.tolist(), dual.edges.tolist(), dual.connected.tolist(), strict=True):
+            graph.add_edge(a, b, edge=edge, connected=connected)
+        return graph
+
+    def to_shapely(self) -> dict[str, npt.NDArray[np.object_]]:
+        """Geometries in the map frame, in the order of their ids: ``faces`` and ``labels`` (polygons), ``edges`` and
+        ``walls`` (line strings), ``vertices`` (points). Needs shapely."""
+        shapely = needed("shapely", "geometry")
+        cut = self.subdivision
+        rings = shapely.linearrings(
+            cut.vertices[cut.face_vertices], indices=np.repeat(np.arange(len(cut.areas)), np.diff(cut.face_offsets))
+        )
+        labels = [shapely.Polygon(label["polygon"], label.get("holes")) for label in self.labels if "polygon" in label]
+        return {
+            "faces": shapely.polygons(rings),
+            "edges": shapely.linestrings(cut.vertices[cut.edge_vertices]),
+            "vertices": shapely.points(cut.vertices),
+            "walls": shapely.linestrings(self.walls.points.reshape(-1, 2, 2)),
+            "labels": np.array(labels, dtype=np.object_),
+        }
+
+
+def survey(
+    map: Map | npt.ArrayLike,
+    *,
+    resolution: float | None = None,
+    origin: Sequence[float] = (0.0, 0.0, 0.0),
+    directions: Directions | None = None,
+    lines: Lines | None = None,
+    threads: int | None = None,
+    **parameters: Any,
+) -> Survey:
+    """Survey a map: all stages in a row.
+
+    Parameters
+    ----------
+    map
+        A `Map`, or an array: uint8 as a picture of a map (0 occupied, 205 unknown, 254 free, top row first), int8 as
+        the data of a nav_msgs/OccupancyGrid (-1, 0..100, lowest row first).
+    resolution, origin
+        Of an array: metres per pixel, and the pose of its lower left corner (m, m, rad).
+    directions, lines
+        Results of your own in place of these stages'.
+    threads
+        At most so many; all cores by default. Any number gives the same survey.
+    **parameters
+        By the table's names, with an underscore for the dot: ``lines_snr=4``.
+
+    Raises
+    ------
+    ParameterError
+        A parameter that is not known or out of its range.
+    MapError
+        An array that is no map.
+    """
+    if not isinstance(map, Map):
+        if resolution is None:
+            raise GroundplanError("map.resolution", "an array needs its resolution", "survey(array, resolution=0.05)")
+        map = from_array(np.asarray(map), resolution, tuple(origin))
+    given = [record(stage) if stage is not None else None for stage in (directions, lines)]
+    found = _core.survey(layout(map), named(parameters), threads or cores(), *given)
+    stages = {
+        "directions": Directions,
+        "lines": Lines,
+        "subdivision": Subdivision,
+        "occupancy": Occupancy,
+        "walls": Walls,
+        "adjacency": Adjacency,
+    }
+    return Survey(
+        map=MapInfo(map.image, map.width, map.height, map.resolution, map.origin),
+        parameters=_core.resolve(named(parameters)),
+        radiograms=[made(Radiogram, arrays) for arrays in found["radiograms"]],
+        labels=found["labels"],
+        warnings=[*map.warnings, *(MapWarning(code, message) for code, message in found["warnings"])],
+        **{name: made(kind, found[name]) for name, kind in stages.items()},
+    )
+
+
+def rows(**columns: Any) -> list[dict[str, Any]]:
+    """Columns as a list of records."""
+    lists = [column.tolist() if isinstance(column, np.ndarray) else column for column in columns.values()]
+    return [dict(zip(columns, values, strict=True)) for values in zip(*lists, strict=True)]
+
+
+def column(records: list[dict[str, Any]], name: str, kind: npt.DTypeLike) -> npt.NDArray[Any]:
+    """One key of a list of records as an array."""
+    return np.array([entry[name] for entry in records], dtype=kind)
+
+
+def dump(value: Any) -> str:
+    """Compact JSON, without what JSON cannot say."""
+    return json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+
+
+def needed(module: str, extra: str) -> Any:
+    """An optional library, imported when used.
+
+    Raises
+    ------
+    GroundplanError
+        ``extra.missing``, with the command that installs it.
+    """
+    import importlib
+
+    try:
+        return importlib.import_module(module)
+    except ImportError as fault:
+        hint = f"pip install 'groundplan[{extra}]'"
+        raise GroundplanError("extra.missing", f"{module} is not installed", hint) from fault

@@ -1,0 +1,169 @@
+"""The scores: what they say of a perfect and of a poor survey, and whether they agree with the published script."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import math
+import sys
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from groundplan._errors import FormatError, GroundplanError, ParameterError
+from groundplan.evaluate import score, suite, suites
+from groundplan.simulate import WarehouseOptions, warehouse
+
+SCRIPT = Path(__file__).parents[2] / "shared" / "tools" / "evaluate_survey.py"
+
+PERFECT = {
+    "direction_error_deg": 0.0,
+    "direction_extra": 0,
+    "line_recall": 1.0,
+    "junction_f1": 1.0,
+    "junction_typed_f1": 1.0,
+    "corridor_recall": 1.0,
+    "corridor_precision": 1.0,
+}
+
+
+@cache
+def truth() -> dict[str, Any]:
+    options: dict[str, Any] = {"width": 30.0, "depth": 24.0, "yaw": 21.0, "skew": 6.0, "partial": 0.35}
+    return warehouse(seed=2, scan_every=0.6, beams=360, lidar_range=7.0, drift=0.0, **options).truth
+
+
+def survey_of(true: dict[str, Any], random: np.random.Generator | None = None) -> dict[str, Any]:
+    """A survey that says what the truth says; with `random`, one that is wrong in all ways a little."""
+
+    def off(scale: float) -> float:
+        return float(random.normal(0, scale)) if random else 0.0
+
+    def kept() -> bool:
+        return random is None or random.random() < 0.8
+
+    directions = [{"angle": a + off(0.004), "weight": 1.0} for a in true["directions"]]
+    lines, labels = [], []
+    for line in true["lines"]:
+        angle = math.atan2(line["normal"][1], line["normal"][0]) - math.pi / 2
+        gaps = [abs((angle - d["angle"] + math.pi / 2) % math.pi - math.pi / 2) for d in directions]
+        family = int(np.argmin(gaps))
+        normal = (-math.sin(directions[family]["angle"]), math.cos(directions[family]["angle"]))
+        middle = [(line["p"][k] + line["q"][k]) / 2 for k in (0, 1)]
+        if kept():
+            offset = normal[0] * middle[0] + normal[1] * middle[1] + off(0.1)
+            lines.append({"direction": family, "offset": offset, "amplitude": 1.0, "width": 0.1})
+    for corridor in true["corridors"]:
+        a, b = np.array(corridor["a"]) + off(0.3), np.array(corridor["b"]) + off(0.3)
+        across = np.array([a[1] - b[1], b[0] - a[0]]) / np.linalg.norm(b - a) * (corridor["width"] / 2 + off(0.3))
+        polygon = [(a - across).tolist(), (b - across).tolist(), (b + across).tolist(), (a + across).tolist()]
+        if kept():
+            labels.append({"kind": "corridor", "polygon": polygon, "axis": [a.tolist(), b.tolist()]})
+    for junction in true["junctions"]:
+        if kept():
+            kind = junction["type"] if kept() or random is None else str(random.choice(["L", "T", "X", "Y", "end"]))
+            at = [junction["at"][0] + off(0.8), junction["at"][1] + off(0.8)]
+            labels.append({"kind": "junction", "type": kind, "at": at})
+    return {"directions": directions, "lines": lines, "labels": labels}
+
+
+def test_a_perfect_survey_scores_full_marks() -> None:
+    scores = score(survey_of(truth()), truth())
+    error = scores.pop("line_error_m")
+    assert scores == PERFECT
+    assert error < 0.02
+
+
+def test_an_empty_survey_scores_nothing() -> None:
+    scores = score({"directions": [], "lines": [], "labels": []}, truth())
+    assert scores["direction_error_deg"] == 180.0
+    assert scores["line_recall"] == 0.0 and scores["line_error_m"] is None
+    assert scores["junction_typed_f1"] == 0.0
+    assert scores["corridor_recall"] == 0.0 and scores["corridor_precision"] == 0.0
+
+
+def test_what_was_not_observed_counts_neither_way() -> None:
+    assert any(not j["observed"] for j in truth()["junctions"])
+    survey = survey_of(truth())
+    hidden = [j["at"] for j in truth()["junctions"] if not j["observed"]]
+    survey["labels"] = [la for la in survey["labels"] if la["kind"] != "junction" or la["at"] not in hidden]
+    assert score(survey, truth())["junction_typed_f1"] == 1.0
+    survey["labels"].append({"kind": "junction", "type": "L", "at": hidden[0]})
+    assert score(survey, truth())["junction_typed_f1"] == 1.0
+
+
+def test_dead_ends_are_not_held_against_a_survey() -> None:
+    survey = survey_of(truth())
+    survey["labels"].append({"kind": "junction", "type": "end", "at": [0.0, 0.0]})
+    assert score(survey, truth())["junction_f1"] == 1.0
+
+
+def test_a_wrong_type_counts_only_where_types_do() -> None:
+    survey = survey_of(truth())
+    first = next(la for la in survey["labels"] if la["kind"] == "junction" and la["type"] != "X")
+    first["type"] = "X"
+    scores = score(survey, truth())
+    assert scores["junction_typed_f1"] < scores["junction_f1"] == 1.0
+
+
+def test_scores_agree_with_the_published_script() -> None:
+    if not SCRIPT.is_file():
+        pytest.skip("the published script is not beside this repository")
+    spec = importlib.util.spec_from_file_location("published", SCRIPT)
+    assert spec is not None and spec.loader is not None
+    published = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(published)
+    random = np.random.default_rng(5)
+    surveys = [survey_of(truth()), *(survey_of(truth(), random) for _ in range(12))]
+    surveys.append({"directions": [], "lines": [], "labels": []})
+    for survey in surveys:
+        expected = published.score(survey, truth())
+        mine = score(survey, truth())
+        assert mine == expected
+        assert list(mine) == list(expected)
+
+
+def test_files_are_read_and_what_is_wrong_with_them_is_said(tmp_path: Path) -> None:
+    right, broken = tmp_path / "truth.json", tmp_path / "survey.json"
+    right.write_text(json.dumps(truth()))
+    assert score(survey_of(truth()), right)["line_recall"] == 1.0
+    broken.write_text("{")
+    for source, code in (
+        (tmp_path / "none.json", "file.read"),
+        (broken, "file.json"),
+        ({"lines": []}, "survey.format"),
+    ):
+        with pytest.raises(FormatError) as caught:
+            score(source, right)
+        assert caught.value.code == code
+    with pytest.raises(FormatError, match="offset") as caught:
+        score({"directions": [{"angle": 0.0}], "lines": [{"direction": 0}], "labels": []}, right)
+    assert caught.value.code == "score.format"
+
+
+def test_a_missing_extra_names_its_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
+    survey = survey_of(truth())
+    monkeypatch.setitem(sys.modules, "scipy.optimize", None)
+    with pytest.raises(GroundplanError) as caught:
+        score(survey, truth())
+    assert caught.value.code == "extra.missing"
+    assert caught.value.hint is not None and "groundplan[evaluate]" in caught.value.hint
+
+
+def test_the_warehouse_suite_has_twenty_valid_cases() -> None:
+    assert "warehouses" in suites()
+    cases = suite("warehouses")
+    assert len(cases) == len({name for name, _ in cases}) == 20
+    assert len({options["seed"] for _, options in cases}) == 20
+    for _, options in cases:
+        WarehouseOptions(**{k: v for k, v in options.items() if k != "seed"})
+    for varied in ("yaw", "skew", "clutter", "drift", "sparse", "partial", "closed_sides", "width"):
+        assert any(varied in options for _, options in cases)
+
+
+def test_an_unknown_suite_is_named() -> None:
+    with pytest.raises(ParameterError, match="castles"):
+        suite("castles")
