@@ -27,6 +27,12 @@ const SMOOTHING: usize = 6;
 const LOWEST_CANDIDATE: f64 = 0.04;
 /// How many candidates are measured at most.
 const MOST_CANDIDATES: usize = 16;
+/// Where to look for what lines up by chance, degrees from a candidate.
+const CONTROLS_DEG: [f64; 6] = [-26.0, -19.0, -13.0, 13.0, 19.0, 26.0];
+/// A pixel speaks for a direction when it lies within this angle of it, degrees.
+const ALIGNED_DEG: f64 = 6.0;
+/// A direction has this many times as much lined up as chance has.
+const CONTRAST: f64 = 3.0;
 /// Directions that are given closer than this are one, radians.
 const CLOSEST: f64 = 1e-6;
 /// Steps of the search for the sharpest radiogram: half range and step, degrees.
@@ -84,8 +90,13 @@ fn search(frame: &Frame, rest: &mut Gradients, parameters: &Parameters, found: &
         if found.iter().any(|(other, _)| angle_between(*other, angle) < separation) {
             continue;
         }
+        // What scattered pixels line up to by chance, they line up to beside the angle as well.
+        let mut beside = CONTROLS_DEG.map(|turn| aligned(frame, rest, angle + turn.to_radians()).0);
+        beside.sort_by(f64::total_cmp);
+        let chance = beside[1];
         let metres = take_aligned(frame, rest, angle, parameters);
-        if metres > 0.0 {
+        if std::env::var("GPD").is_ok() { eprintln!("{:.2} {metres:.1} {:?}", angle.to_degrees(), beside); }
+        if metres > CONTRAST * chance {
             found.push((angle, metres));
         }
     }
@@ -155,10 +166,10 @@ fn vertex(left: f64, middle: f64, right: f64) -> f64 {
     if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 }
 }
 
-/// Metres of structure that stand out of the background as lines along `angle`; the pixels on them are taken out.
-fn take_aligned(frame: &Frame, gradients: &mut Gradients, angle: f64, parameters: &Parameters) -> f64 {
-    let tolerance = parameters.radiograms_tolerance_deg.to_radians();
-    let selection = Selection::along(gradients, angle, tolerance, false);
+/// Metres of structure that stand out of the background as lines along `angle`; the first bin of the projection, and
+/// for each bin whether a line lies there.
+fn aligned(frame: &Frame, gradients: &Gradients, angle: f64) -> (f64, i64, Vec<bool>) {
+    let selection = Selection::along(gradients, angle, ALIGNED_DEG.to_radians(), false);
     let (first, bins) = selection.project(frame, angle);
     let unit = metres_per_unit(frame, angle) / frame.resolution;
     let values: Vec<f64> = bins.iter().map(|&bin| bin as f64 * unit).collect();
@@ -182,6 +193,14 @@ fn take_aligned(frame: &Frame, gradients: &mut Gradients, angle: f64, parameters
             n += 1;
         }
     }
+    (metres, first, on_line)
+}
+
+/// The same, and the pixels on those lines are taken out.
+fn take_aligned(frame: &Frame, gradients: &mut Gradients, angle: f64, parameters: &Parameters) -> f64 {
+    let (metres, first, on_line) = aligned(frame, gradients, angle);
+    let tolerance = parameters.radiograms_tolerance_deg.to_radians();
+    let selection = Selection::along(gradients, angle, tolerance, false);
     let mut keep = vec![true; gradients.pixels.len()];
     for (&index, bin) in selection.indices.iter().zip(selection.bins(angle)) {
         keep[index as usize] = !on_line[(bin - first) as usize];
