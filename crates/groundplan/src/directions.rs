@@ -33,6 +33,10 @@ const CONTROLS_DEG: [f64; 6] = [-26.0, -19.0, -13.0, 13.0, 19.0, 26.0];
 const ALIGNED_DEG: f64 = 6.0;
 /// A direction has this many times as much lined up as chance has.
 const CONTRAST: f64 = 3.0;
+/// So many of the controls may lie on other directions.
+const OTHERS_AMONG_CONTROLS: usize = 4;
+/// Where there would be one direction only, a second one needs this share of its structure.
+const SECOND: f64 = 0.04;
 /// Directions that are given closer than this are one, radians.
 const CLOSEST: f64 = 1e-6;
 /// Steps of the search for the sharpest radiogram: half range and step, degrees.
@@ -50,56 +54,84 @@ const BACKGROUND_PIXELS: usize = 20;
 pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parameters) -> Directions {
     let mut rest = gradients.clone();
     let histogram = histogram(gradients);
-    let mut found: Vec<(f64, f64)> = Vec::new();
-    if let Some(given) = &parameters.directions_angles_deg {
-        for angle in given.iter().map(|a| frame.angle_to_grid(a.to_radians())) {
-            if found.iter().all(|(other, _)| angle_between(*other, angle) > CLOSEST) {
-                found.push((angle, take_aligned(frame, &mut rest, angle, parameters)));
-            }
-        }
-    } else {
-        search(frame, &mut rest, parameters, &mut found);
-    }
-    found.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let strongest = found.first().map_or(0.0, |f| f.1);
+    let given = parameters.directions_angles_deg.as_ref();
+    let mut found = match given {
+        Some(angles) => measure(frame, &mut rest, angles, parameters),
+        None => search(frame, &mut rest, parameters),
+    };
+    found.sort_by(|a, b| b.metres.total_cmp(&a.metres));
+    let strongest = found.first().map_or(0.0, |f| f.metres);
     match parameters.directions_count {
         Some(count) => found.truncate(count),
-        None if parameters.directions_angles_deg.is_some() => {}
-        None => found.retain(|(_, weight)| *weight >= parameters.directions_min_weight * strongest),
+        None if given.is_some() => {}
+        None => {
+            let (strong, weak): (Vec<_>, Vec<_>) =
+                found.into_iter().partition(|f| f.metres >= parameters.directions_min_weight * strongest);
+            found = strong.into_iter().filter(|f| f.exceeds_chance(OTHERS_AMONG_CONTROLS)).collect();
+            // A ground plan has two directions, be it only by the ends of its racks.
+            if found.len() == 1 {
+                let second = |f: &Candidate| f.metres >= SECOND * strongest && f.exceeds_chance(1);
+                found.extend(weak.into_iter().find(second));
+            }
+        }
     }
-    let sum: f64 = found.iter().map(|f| f.1).sum();
+    let sum: f64 = found.iter().map(|f| f.metres).sum();
     let total = gradients.pixels.len() as f64 * frame.resolution;
     Directions {
-        angles: found.iter().map(|(angle, _)| tidy_angle(frame.angle_to_map(*angle))).collect(),
-        weights: found.iter().map(|(_, w)| if strongest > 0.0 { tidy(w / strongest) } else { 0.0 }).collect(),
+        angles: found.iter().map(|f| tidy_angle(frame.angle_to_map(f.angle))).collect(),
+        weights: found.iter().map(|f| if strongest > 0.0 { tidy(f.metres / strongest) } else { 0.0 }).collect(),
         histogram: turned(&histogram, frame),
         explained: if total > 0.0 { tidy((sum / total).min(1.0)) } else { 0.0 },
     }
 }
 
+/// A direction that may be one.
+struct Candidate {
+    angle: f64,
+    /// Metres of structure that line up along it.
+    metres: f64,
+    /// What lines up beside it, least first: scattered pixels line up there as well as they do here.
+    beside: [f64; CONTROLS_DEG.len()],
+}
+
+impl Candidate {
+    /// Clearly more lines up here than beside; so many of the greatest controls may be other directions.
+    fn exceeds_chance(&self, others: usize) -> bool {
+        self.metres > CONTRAST * self.beside[self.beside.len() - 1 - others]
+    }
+}
+
+/// How much lines up along the directions that are given, degrees in the map frame; each once.
+fn measure(frame: &Frame, rest: &mut Gradients, angles: &[f64], parameters: &Parameters) -> Vec<Candidate> {
+    let mut found: Vec<Candidate> = Vec::new();
+    for angle in angles.iter().map(|a| frame.angle_to_grid(a.to_radians())) {
+        if found.iter().all(|other| angle_between(other.angle, angle) > CLOSEST) {
+            let metres = take_aligned(frame, rest, angle, parameters);
+            found.push(Candidate { angle, metres, beside: Default::default() });
+        }
+    }
+    found
+}
+
 /// Takes direction after direction out of `rest`.
-fn search(frame: &Frame, rest: &mut Gradients, parameters: &Parameters, found: &mut Vec<(f64, f64)>) {
+fn search(frame: &Frame, rest: &mut Gradients, parameters: &Parameters) -> Vec<Candidate> {
     let separation = parameters.directions_separation_deg.to_radians();
+    let mut found: Vec<Candidate> = Vec::new();
     let mut tried: Vec<f64> = Vec::new();
     while tried.len() < MOST_CANDIDATES {
         let candidates = candidates(&histogram(rest));
         let fresh = |angle: &f64| tried.iter().all(|other| angle_between(*other, *angle) >= separation / 2.0);
-        let Some(start) = candidates.into_iter().find(fresh) else { return };
+        let Some(start) = candidates.into_iter().find(fresh) else { break };
         let angle = sharpest(frame, rest, start, parameters);
         tried.push(start);
-        if found.iter().any(|(other, _)| angle_between(*other, angle) < separation) {
-            continue;
-        }
-        // What scattered pixels line up to by chance, they line up to beside the angle as well.
-        let mut beside = CONTROLS_DEG.map(|turn| aligned(frame, rest, angle + turn.to_radians()).0);
-        beside.sort_by(f64::total_cmp);
-        let chance = beside[1];
-        let metres = take_aligned(frame, rest, angle, parameters);
-        if std::env::var("GPD").is_ok() { eprintln!("{:.2} {metres:.1} {:?}", angle.to_degrees(), beside); }
-        if metres > CONTRAST * chance {
-            found.push((angle, metres));
+        if found.iter().all(|other| angle_between(other.angle, angle) >= separation) {
+            let mut beside = CONTROLS_DEG.map(|turn| aligned(frame, rest, angle + turn.to_radians()).0);
+            beside.sort_by(f64::total_cmp);
+            let metres = take_aligned(frame, rest, angle, parameters);
+            found.push(Candidate { angle, metres, beside });
         }
     }
+    found
 }
 
 /// Summed magnitudes over the angle on the grid.

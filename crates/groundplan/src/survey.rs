@@ -105,7 +105,9 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
 /// Fewer edge pixels than this are no structure.
 const FEW_EDGE_PIXELS: usize = 100;
 /// Less of the structure lined up than this is no ground plan.
-const LITTLE_EXPLAINED: f64 = 0.4;
+const LITTLE_EXPLAINED: f64 = 0.12;
+/// Two directions hold at least this much of what lines up, or it is not one ground plan.
+const PAIR_SHARE: f64 = 0.75;
 
 fn find_warnings(
     gradients: &Gradients,
@@ -125,6 +127,15 @@ fn find_warnings(
     } else if directions.explained < LITTLE_EXPLAINED {
         let percent = (100.0 * directions.explained).round();
         warn("little-structure", format!("only {percent} percent of the structure lines up along the directions found"));
+    }
+    let pair: f64 = directions.weights.iter().take(2).sum();
+    let all: f64 = directions.weights.iter().sum();
+    if pair < PAIR_SHARE * all {
+        let (count, percent) = (directions.weights.len(), (100.0 * pair / all).round());
+        warn(
+            "scattered-structure",
+            format!("the structure is scattered over {count} directions, and the strongest two hold only {percent} percent"),
+        );
     }
     if let Some(count) = parameters.directions_count
         && directions.angles.len() < count
