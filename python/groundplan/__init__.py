@@ -5,35 +5,41 @@
     map = groundplan.read("warehouse.yaml")
     survey = groundplan.survey(map)
     survey.write("survey.json")
+
+Importing the package costs next to nothing: each name below is imported when it is first asked for.
 """
 
-from groundplan._core import version as _version
-from groundplan._errors import FormatError, GroundplanError, MapError, ParameterError
-from groundplan.maps import Map, MapWarning, from_array, read
-from groundplan.parameters import table as parameters
-from groundplan.stages import (
-    Adjacency,
-    Directions,
-    Gradients,
-    Lines,
-    Occupancy,
-    Radiogram,
-    Response,
-    Subdivision,
-    Walls,
-    find_adjacency,
-    find_directions,
-    find_gradients,
-    find_lines,
-    find_occupancy,
-    find_radiograms,
-    find_response,
-    find_walls,
-    subdivide,
-)
-from groundplan.survey import Survey, survey
+import sys
+from types import ModuleType
+from typing import TYPE_CHECKING
 
-__version__ = _version()
+if TYPE_CHECKING:
+    from groundplan._errors import FormatError, GroundplanError, MapError, ParameterError
+    from groundplan.maps import Map, MapWarning, from_array, read
+    from groundplan.parameters import table as parameters
+    from groundplan.stages import (
+        Adjacency,
+        Directions,
+        Gradients,
+        Lines,
+        Occupancy,
+        Radiogram,
+        Response,
+        Subdivision,
+        Walls,
+        find_adjacency,
+        find_directions,
+        find_gradients,
+        find_lines,
+        find_occupancy,
+        find_radiograms,
+        find_response,
+        find_walls,
+        subdivide,
+    )
+    from groundplan.survey import Survey, survey
+
+    __version__: str
 
 __all__ = [
     "Adjacency",
@@ -66,3 +72,36 @@ __all__ = [
     "subdivide",
     "survey",
 ]
+
+if not TYPE_CHECKING:  # a type checker would take any name at all for one that __getattr__ gives
+
+    def __getattr__(name: str) -> object:
+        """A public name, imported when it is first asked for."""
+        from importlib import import_module
+
+        if name == "__version__":
+            return import_module("groundplan._core").version()
+        if name not in __all__:
+            raise AttributeError(f"module 'groundplan' has no attribute {name!r}")
+        if name == "parameters":
+            value = import_module("groundplan.parameters").table
+        else:
+            # Each module has what it makes and what the ones before it made.
+            homes = (import_module(f"groundplan.{home}") for home in ("_errors", "maps", "stages", "survey"))
+            value = next(vars(home)[name] for home in homes if name in vars(home))
+        globals()[name] = value
+        return value
+
+    def __dir__() -> list[str]:
+        return sorted({*globals(), *__all__, "__version__"})
+
+
+class _Package(ModuleType):
+    """Two modules have the names of the functions they hold: importing them must not hide the functions."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not (isinstance(value, ModuleType) and name in __all__):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package

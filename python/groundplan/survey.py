@@ -68,6 +68,8 @@ class Survey(Stage):
         Corridors, junctions: ``kind`` and its keys; an id is a position in this list.
     warnings : list of MapWarning
         Partial trouble, the map's own first.
+    source : str or None
+        The map's file as it was named on the command line, so that figures can be drawn over it later.
     """
 
     map: MapInfo
@@ -81,6 +83,7 @@ class Survey(Stage):
     adjacency: Adjacency
     labels: list[Label]
     warnings: list[MapWarning] = field(default_factory=list)
+    source: str | None = None
 
     def problems(self) -> list[str]:
         """Every broken invariant of the subdivision and its pixels, as sentences; an empty list when all hold."""
@@ -102,9 +105,11 @@ class Survey(Stage):
         lines = [None if line < 0 else line for line in cut.edge_lines.tolist()]
         sides = [[None if f < 0 else f for f in pair] for pair in cut.edge_faces.tolist()]
         kinds = ["freestanding" if free else "separating" for free in self.walls.freestanding.tolist()]
+        source = {} if self.source is None else {"source": {"file": self.source}}
         return {
             "format": FORMAT,
             "version": VERSION,
+            **source,
             "map": {f.name: getattr(self.map, f.name) for f in fields(self.map)} | {"origin": list(self.map.origin)},
             "parameters": self.parameters,
             "directions": rows(angle=self.directions.angles, weight=self.directions.weights),
@@ -258,6 +263,7 @@ class Survey(Stage):
             ),
             labels=tree["labels"],
             warnings=[MapWarning(w["code"], w["message"]) for w in tree["warnings"]],
+            source=str(tree["source"]["file"]) if "source" in tree else None,
         )
 
     def to_networkx(self) -> networkx.Graph[int]:

@@ -404,7 +404,7 @@ impl Builder {
         self.rows_below.truncate(kept as usize);
 
         let mut made = Arrangement { lines: self.lines, ..Arrangement::default() };
-        let mut ranks: Vec<[u16; 2]> = Vec::new();
+        let mut ranks: Vec<[u32; 2]> = Vec::new();
         let (line_ranks, border_ranks) = rank(&made.lines);
         for (n, chain) in chains.iter().enumerate() {
             let start = made.edges.len() as u32;
@@ -448,7 +448,7 @@ fn around(p: &End, q: &End) -> Ordering {
 
 /// The place of every way out of a vertex, counter-clockwise: of each line forwards and backwards, and of the border's
 /// four sides as they run.
-fn rank(lines: &[LatticeLine]) -> (Vec<[u16; 2]>, [u16; 4]) {
+fn rank(lines: &[LatticeLine]) -> (Vec<[u32; 2]>, [u32; 4]) {
     let border = [[1, 0], [0, 1], [-1, 0], [0, -1]].map(|v: [i64; 2]| v.map(i128::from));
     let ways = |line: &LatticeLine| {
         let (x, y) = (i128::from(line.b), -i128::from(line.a));
@@ -466,7 +466,7 @@ fn rank(lines: &[LatticeLine]) -> (Vec<[u16; 2]>, [u16; 4]) {
     }
     all.sort_by(turn);
     all.dedup_by(|v, w| turn(v, w) == Ordering::Equal);
-    let place = |v: &[i128; 2]| all.partition_point(|w| turn(w, v) == Ordering::Less) as u16;
+    let place = |v: &[i128; 2]| all.partition_point(|w| turn(w, v) == Ordering::Less) as u32;
     (lines.iter().map(|line| ways(line).map(|v| place(&v))).collect(), border.map(|v| place(&v)))
 }
 
@@ -490,7 +490,7 @@ impl Arrangement {
     }
 
     /// Sorts the half-edges around each vertex and links each to the next around its face.
-    fn link(&mut self, ranks: &[[u16; 2]]) {
+    fn link(&mut self, ranks: &[[u32; 2]]) {
         let halves = self.edges.len() * 2;
         let rank = |half: u32| ranks[(half >> 1) as usize][(half & 1) as usize];
         let mut starts = vec![0u32; self.vertices.len() + 1];

@@ -86,19 +86,21 @@ fn edge_pixels(grid: &Grid, band: std::ops::Range<usize>) -> Vec<Vec<u32>> {
     .collect()
 }
 
-/// Gradients of one row's edge pixels, from the scatter of the edge pixels within `radius` in x and y.
+/// Gradients of one row's edge pixels, from the scatter of the edge pixels within `radius`. The window is round: of a
+/// wall's two faces a square one would cut off unequal ends, and so turn them towards its own corners.
 fn row_gradients(rows: &[Vec<u32>], y: usize, radius: usize, out: &mut Gradients) {
     let columns = &rows[y];
     if columns.is_empty() {
         return;
     }
     let around = y.saturating_sub(radius)..(y + radius + 1).min(rows.len());
-    let reach = radius as i64;
+    let reaches: Vec<i64> =
+        around.clone().map(|other| (radius.pow(2) - y.abs_diff(other).pow(2)).isqrt() as i64).collect();
     let mut starts = vec![0usize; around.len()];
     for &column in columns {
         let x = i64::from(column);
         let (mut n, mut sx, mut sy, mut sxx, mut sxy, mut syy) = (0i64, 0i64, 0i64, 0i64, 0i64, 0i64);
-        for (start, other) in starts.iter_mut().zip(around.clone()) {
+        for ((start, &reach), other) in starts.iter_mut().zip(&reaches).zip(around.clone()) {
             let row = &rows[other];
             while *start < row.len() && i64::from(row[*start]) < x - reach {
                 *start += 1;

@@ -257,8 +257,12 @@ fn edge_occupancy(
                     x * cos + y * sin + diagonal
                 });
                 let (from, to) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-                // Whole bins within; a shorter edge is judged by the bin it lies in.
-                let (first, last) = (from.round() as usize, (to.round() as usize).max(from.round() as usize + 1));
+                // Whole bins within; a shorter edge is judged by the bin that its middle lies in.
+                let (mut first, mut last) = (from.round() as usize, to.round() as usize);
+                if first == last {
+                    first = f64::midpoint(from, to) as usize;
+                    last = first + 1;
+                }
                 let count = count_below(bits, &sums, last) - count_below(bits, &sums, first);
                 occupancy[edge as usize] = tidy(f64::from(count) / (last - first) as f64);
             }

@@ -28,6 +28,9 @@ const SPECK_SHARE: i64 = 4;
 const BITS: u32 = 20;
 /// Fixed-point bits of the place between two bins.
 const FRACTION_BITS: u32 = 4;
+/// Sharpness is measured with 2^this many bins to the pixel, smoothed twice over so many bins.
+const SHARP_BITS: u32 = 2;
+const SMOOTHING: usize = 7;
 
 /// Which pixels to project, and how much each weighs.
 pub(crate) struct Selection {
@@ -57,17 +60,24 @@ impl Selection {
 
     /// Sums of weights over offset, split between the two nearest bins, and the offset of the first bin in pixels.
     pub fn project(&self, frame: &Frame, angle: f64) -> (i64, Vec<i64>) {
+        self.project_fine(frame, angle, 0)
+    }
+
+    /// The same with 2^`fine` bins to the pixel; the offset of the first is in bins.
+    fn project_fine(&self, frame: &Frame, angle: f64, fine: u32) -> (i64, Vec<i64>) {
         let [nx, ny] = normal(angle);
         let (width, height) = (frame.width as i64, frame.height as i64);
-        let corners = [0, nx * width, ny * height, nx * width + ny * height].map(|c| c >> BITS);
+        let corners = [0, nx * width, ny * height, nx * width + ny * height].map(|c| c >> (BITS - fine));
         let first = corners.into_iter().min().unwrap_or(0) - 2;
         let last = corners.into_iter().max().unwrap_or(0) + 2;
         let mut bins = vec![0i64; (last - first + 1) as usize];
+        // Half pixels times 2^BITS to fractions of a bin, rounded; bins sit at whole pixels and between.
+        let shift = BITS + 1 - fine - FRACTION_BITS;
+        let half = 1 << (shift - 1);
         for ([x, y], weight) in self.centres.iter().zip(&self.weights) {
-            // Half pixels times 2^BITS; bins sit at whole pixels.
-            let fine = (nx * x + ny * y) >> (BITS + 1 - FRACTION_BITS);
-            let bin = (fine >> FRACTION_BITS) - first;
-            let part = fine & ((1 << FRACTION_BITS) - 1);
+            let place = (nx * x + ny * y + half) >> shift;
+            let bin = (place >> FRACTION_BITS) - first;
+            let part = place & ((1 << FRACTION_BITS) - 1);
             bins[bin as usize] += weight * ((1 << FRACTION_BITS) - part);
             bins[bin as usize + 1] += weight * part;
         }
@@ -80,12 +90,25 @@ impl Selection {
         self.centres.iter().map(move |[x, y]| (nx * x + ny * y + (1 << BITS)) >> (BITS + 1))
     }
 
-    /// Sum of squares of the projection: it is greatest where walls fall on single bins. The bins are smoothed first,
-    /// so that a wall between two bins counts as one upon a bin does.
+    /// Sum of squares of the projection: it is greatest where walls fall on single bins. The projection is finer than
+    /// a pixel and smoothed over one, so that it does not matter where between the bins a wall falls: else an angle
+    /// slightly off, at which the walls happen to fall upon bins, would look sharper than the right one.
     pub fn sharpness(&self, frame: &Frame, angle: f64) -> f64 {
-        let (_, bins) = self.project(frame, angle);
-        bins.windows(3).map(|w| ((w[0] + 2 * w[1] + w[2]) as f64).powi(2)).sum()
+        let (_, bins) = self.project_fine(frame, angle, SHARP_BITS);
+        smooth(smooth(bins)).into_iter().map(|value| (value as f64).powi(2)).sum()
     }
+}
+
+/// Sums over [`SMOOTHING`] neighbouring bins; the ends where fewer are left are not missed, nothing lies there.
+fn smooth(bins: Vec<i64>) -> Vec<i64> {
+    let mut sum = 0;
+    (0..bins.len() + SMOOTHING - 1)
+        .map(|n| {
+            sum += bins.get(n).unwrap_or(&0);
+            sum -= n.checked_sub(SMOOTHING).map_or(0, |gone| bins[gone]);
+            sum
+        })
+        .collect()
 }
 
 /// Normal of a direction in fixed point.

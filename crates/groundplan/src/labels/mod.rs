@@ -1,8 +1,11 @@
 //! II-E: what the parts of the map are.
 
+mod corridors;
+mod junctions;
 mod outline;
 mod paper;
 mod strips;
+mod turned;
 
 use crate::adjacency::Adjacency;
 use crate::arrangement::Arrangement;

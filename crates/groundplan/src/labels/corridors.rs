@@ -1,0 +1,265 @@
+//! II-E: corridors, Fig. 8c: closed on both long sides, open along the middle.
+//!
+//! A corridor lies between two lines of one direction, but neither holds across the whole map: each pair of lines is
+//! asked column by column whether the strip between them is free there and whether structure lies on both its sides.
+//! Gaps in a side shorter than a rack's bay are the bay; longer ones are where other ways open. Of strips that overlap
+//! the one with the most wall along it is kept, and the others keep what is left of them.
+
+use super::Evidence;
+use super::turned::Turned;
+
+/// A strip of free space along one direction, in the direction's own places (metres along and across).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strip {
+    /// Index of the direction.
+    pub direction: usize,
+    /// Where its walled part begins and ends, along.
+    pub along: [f64; 2],
+    /// Its two sides, across.
+    pub across: [f64; 2],
+    /// Length over which both sides are walls, metres.
+    pub walled: f64,
+    /// What speaks for it less what speaks against it, metres.
+    pub score: f64,
+}
+
+impl Strip {
+    /// Free width, metres.
+    pub fn width(&self) -> f64 {
+        self.across[1] - self.across[0]
+    }
+
+    /// Walled length, end to end, metres.
+    pub fn length(&self) -> f64 {
+        self.along[1] - self.along[0]
+    }
+
+    /// Place across of its centre line.
+    pub fn middle(&self) -> f64 {
+        (self.across[0] + self.across[1]) / 2.0
+    }
+}
+
+/// A side's gap up to this long is an empty bay, metres.
+const BAY: f64 = 2.9;
+/// Pieces of side shorter than this are specks, metres.
+const SHORTEST_SIDE: f64 = 0.25;
+/// Structure on a line within a strip blocks it when it is so long, with gaps of so much, metres.
+const PIECE: f64 = 0.6;
+const PIECE_GAP: f64 = 0.3;
+/// Lines this near to a strip's side belong to it, metres.
+const INNER: f64 = 0.45;
+/// Walls lie this far within the strip's sides, metres.
+const MARGIN: f64 = 0.2;
+/// What speaks against a corridor, in columns that speak for it: an opening at a side, and a strip that is blocked.
+const OPEN: f64 = 0.15;
+const BLOCKED: f64 = 6.0;
+/// Up to this share, what stands in the strip is clutter that one passes by.
+const NARROWED: f64 = 0.5;
+/// Nothing gets through where more than this share is blocked, and that speaks so much against a corridor.
+pub const IMPASSABLE: f64 = 0.8;
+const CLOSED: f64 = 40.0;
+/// A side with less than this share of structure on it cannot part two corridors.
+const DENSE: f64 = 0.6;
+/// Least share of a corridor's length that is walled on both sides.
+const LEAST_WALLED: f64 = 0.2;
+/// Strips that overlap across by more than this share of the narrower one are rivals.
+const RIVAL: f64 = 0.25;
+
+/// Corridors along every direction, in the order of the directions and their places.
+pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
+    views.iter().flat_map(|view| along(evidence, view)).collect()
+}
+
+fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
+    let parameters = evidence.parameters;
+    let sides: Vec<Vec<bool>> = view.covered.iter().map(|covered| side(covered, view.cell)).collect();
+    let pieces: Vec<Vec<bool>> = view.covered.iter().map(|covered| piece(covered, view.cell)).collect();
+    let offsets: Vec<f64> = view.lines.iter().map(|&n| evidence.lines.offsets[n]).collect();
+    let mut candidates = Vec::new();
+    for low in 0..offsets.len() {
+        for high in low + 1..offsets.len() {
+            let width = offsets[high] - offsets[low];
+            if width > parameters.labels_max_width {
+                break;
+            }
+            if width >= parameters.labels_min_width {
+                let across = [offsets[low], offsets[high]];
+                let margin = INNER.min(0.25 * width);
+                let within = (low + 1..high).filter(|&n| offsets[n] - across[0] > margin && across[1] - offsets[n] > margin);
+                let inner: Vec<&[bool]> = within.map(|n| pieces[n].as_slice()).collect();
+                let columns = columns(view, [&sides[low], &sides[high]], &inner, across);
+                let found = strips(view, &columns, 0..view.size[0], across, parameters.labels_min_aspect);
+                candidates.extend(found.into_iter().map(|strip| (strip, columns.clone())));
+            }
+        }
+    }
+    candidates.sort_by(|(a, _), (b, _)| b.score.total_cmp(&a.score));
+    let mut kept: Vec<Strip> = Vec::new();
+    for (strip, columns) in candidates {
+        // What stronger rivals leave of it.
+        let mut left = vec![(view.column(strip.along[0]), view.column(strip.along[1] - view.cell / 2.0) + 1)];
+        for rival in &kept {
+            let shared = strip.across[1].min(rival.across[1]) - strip.across[0].max(rival.across[0]);
+            let beside = shared.abs() < INNER && !dense(view, &pieces, &offsets, &strip, rival);
+            if shared > RIVAL * strip.width().min(rival.width()) || beside {
+                let cut = (view.column(rival.along[0]), view.column(rival.along[1] - view.cell / 2.0) + 1);
+                left = left.into_iter().flat_map(|(a, b)| [(a, b.min(cut.0)), (a.max(cut.1), b)]).filter(|(a, b)| a < b).collect();
+            }
+        }
+        for (from, to) in left {
+            kept.extend(strips(view, &columns, from..to, strip.across, parameters.labels_min_aspect));
+        }
+    }
+    kept.sort_by(|a, b| a.middle().total_cmp(&b.middle()).then(a.along[0].total_cmp(&b.along[0])));
+    kept
+}
+
+/// True when enough structure lies between two strips side by side to part them.
+fn dense(view: &Turned, pieces: &[Vec<bool>], offsets: &[f64], one: &Strip, two: &Strip) -> bool {
+    let columns = view.column(one.along[0].max(two.along[0]))..view.column(one.along[1].min(two.along[1])).max(1);
+    let border = if one.middle() < two.middle() { [one.across[1], two.across[0]] } else { [two.across[1], one.across[0]] };
+    let (low, high) = (border[0].min(border[1]) - 1e-6, border[0].max(border[1]) + 1e-6);
+    let lines: Vec<&Vec<bool>> =
+        offsets.iter().zip(pieces).filter(|(o, _)| **o >= low && **o <= high).map(|(_, piece)| piece).collect();
+    let count = columns.len();
+    count > 0 && columns.filter(|&c| lines.iter().any(|line| line[c])).count() as f64 >= DENSE * count as f64
+}
+
+/// Where a line is a side: structure, with the gaps of empty bays closed.
+fn side(covered: &[bool], cell: f64) -> Vec<bool> {
+    let mut closed = covered.to_vec();
+    close(&mut closed, (BAY / cell) as usize);
+    let shortest = (SHORTEST_SIDE / cell) as usize;
+    for (from, to) in runs(&closed.clone(), true) {
+        if to - from < shortest {
+            closed[from..to].fill(false);
+        }
+    }
+    closed
+}
+
+/// Where structure of some length lies on a line.
+fn piece(covered: &[bool], cell: f64) -> Vec<bool> {
+    let mut closed = covered.to_vec();
+    close(&mut closed, (PIECE_GAP / cell) as usize);
+    for (from, to) in runs(&closed.clone(), true) {
+        if to - from < (PIECE / cell) as usize {
+            closed[from..to].fill(false);
+        }
+    }
+    closed
+}
+
+/// What one column of a strip holds.
+#[derive(Clone, Copy)]
+struct Column {
+    /// Share of it that is not free.
+    blocked: f64,
+    /// Structure lies on both sides.
+    walled: bool,
+}
+
+impl Column {
+    /// What a column says for a corridor or against it.
+    fn score(self) -> f64 {
+        let against = if self.blocked > IMPASSABLE {
+            CLOSED
+        } else if self.blocked > NARROWED {
+            BLOCKED * self.blocked
+        } else {
+            2.0 * self.blocked
+        };
+        (if self.walled { 1.0 } else { -OPEN }) - against
+    }
+}
+
+fn columns(view: &Turned, sides: [&[bool]; 2], inner: &[&[bool]], across: [f64; 2]) -> Vec<Column> {
+    let margin = MARGIN.min(0.2 * (across[1] - across[0]));
+    (0..view.size[0])
+        .map(|c| Column {
+            blocked: {
+                let least = if inner.iter().any(|line| line[c]) { IMPASSABLE } else { 0.0 };
+                view.blocked(c, across[0] + margin, across[1] - margin).max(least)
+            },
+            walled: sides.iter().all(|side| side[c]),
+        })
+        .collect()
+}
+
+/// The corridors among a strip's columns: the pieces in which what speaks for a corridor outweighs what speaks against
+/// it, each as long as that holds.
+fn strips(view: &Turned, columns: &[Column], range: std::ops::Range<usize>, across: [f64; 2], aspect: f64) -> Vec<Strip> {
+    let scores: Vec<f64> = columns[range.clone()].iter().map(|c| c.score()).collect();
+    let mut found = Vec::new();
+    for (from, to) in best_pieces(&scores) {
+        let piece = &columns[range.start + from..range.start + to];
+        let walled = piece.iter().filter(|c| c.walled && c.blocked < 0.5).count() as f64 * view.cell;
+        let along = [view.along(range.start + from), view.along(range.start + to)];
+        let score = scores[from..to].iter().sum::<f64>() * view.cell;
+        let strip = Strip { direction: view.direction, along, across, walled, score };
+        if strip.length() >= aspect * strip.width() && walled >= LEAST_WALLED * strip.length() {
+            found.push(strip);
+        }
+    }
+    found
+}
+
+/// All maximal pieces with the greatest sums (Ruzzo and Tompa 1999): from, to.
+fn best_pieces(scores: &[f64]) -> Vec<(usize, usize)> {
+    struct Piece {
+        from: usize,
+        to: usize,
+        before: f64,
+        after: f64,
+    }
+    let mut pieces: Vec<Piece> = Vec::new();
+    let mut sum = 0.0;
+    for (n, &score) in scores.iter().enumerate() {
+        let before = sum;
+        sum += score;
+        if score <= 0.0 {
+            continue;
+        }
+        let mut piece = Piece { from: n, to: n + 1, before, after: sum };
+        while let Some(place) = pieces.iter().rposition(|other| other.before < piece.before) {
+            if pieces[place].after >= piece.after {
+                break;
+            }
+            piece.from = pieces[place].from;
+            piece.before = pieces[place].before;
+            pieces.truncate(place);
+        }
+        pieces.push(piece);
+    }
+    pieces.into_iter().map(|piece| (piece.from, piece.to)).collect()
+}
+
+/// Fills gaps of up to `longest` between set flags.
+fn close(flags: &mut [bool], longest: usize) {
+    let gaps = runs(flags, false);
+    let len = flags.len();
+    for (from, to) in gaps {
+        if from > 0 && to < len && to - from <= longest {
+            flags[from..to].fill(true);
+        }
+    }
+}
+
+/// Runs of flags that are `wanted`: from, to.
+pub fn runs(flags: &[bool], wanted: bool) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
+    let mut start = None;
+    for (n, &flag) in flags.iter().enumerate() {
+        match (flag == wanted, start) {
+            (true, None) => start = Some(n),
+            (false, Some(from)) => {
+                found.push((from, n));
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    found.extend(start.map(|from| (from, flags.len())));
+    found
+}

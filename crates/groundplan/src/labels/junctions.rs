@@ -1,0 +1,92 @@
+//! II-E: junctions, where corridors meet; their type is the number of ways out.
+
+use super::JunctionKind;
+use super::corridors::{IMPASSABLE, Strip};
+use super::turned::Turned;
+use crate::grid::angle_between;
+
+/// Where two corridors meet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Meeting {
+    /// By its ways out.
+    pub kind: JunctionKind,
+    /// Its middle, metres in the map frame.
+    pub at: [f64; 2],
+    /// The two corridors.
+    pub corridors: [usize; 2],
+    /// Half of each corridor's piece within the junction, metres along that corridor.
+    pub reach: [f64; 2],
+}
+
+/// A corridor goes on beyond a junction when it does so for this long, metres.
+const ARM: f64 = 1.0;
+/// A corridor that ends this far short of another still meets it, metres, when the way between is free.
+const SHORT: f64 = 4.0;
+/// Junctions nearer than this are one, metres.
+const SAME: f64 = 1.0;
+/// Three ways that meet at less than this angle are a Y, degrees.
+const SQUARE_DEG: f64 = 55.0;
+
+/// Junctions of the corridors, in the order of the corridors.
+pub fn find(views: &[Turned], strips: &[Strip]) -> Vec<Meeting> {
+    let mut found: Vec<Meeting> = Vec::new();
+    for a in 0..strips.len() {
+        for b in a + 1..strips.len() {
+            if strips[a].direction != strips[b].direction
+                && let Some(meeting) = meet(views, strips, [a, b])
+                && found.iter().all(|other| crate::subdivision::distance(other.at, meeting.at) > SAME)
+            {
+                found.push(meeting);
+            }
+        }
+    }
+    found
+}
+
+fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting> {
+    let one = &strips[pair[0]];
+    let two = &strips[pair[1]];
+    let (first, second) = (&views[one.direction], &views[two.direction]);
+    // The centre lines' crossing: n1.p = m1, n2.p = m2.
+    let [(s1, c1), (s2, c2)] = [first, second].map(|v| (libm::sin(v.angle), libm::cos(v.angle)));
+    let sine = s2 * c1 - s1 * c2;
+    if sine.abs() < 0.1 {
+        return None;
+    }
+    let (m1, m2) = (one.middle(), two.middle());
+    let at = [(m1 * c2 - m2 * c1) / sine, (m1 * s2 - m2 * s1) / sine];
+    let at = [at[0], at[1]];
+    let mut ways = [0; 2];
+    let mut reach = [0.0; 2];
+    for (n, (strip, other, view)) in [(one, two, first), (two, one, second)].into_iter().enumerate() {
+        let u = view.place(at)[0];
+        reach[n] = other.width() / 2.0 / sine.abs();
+        let near = reach[n] + SHORT;
+        if u < strip.along[0] - near || u > strip.along[1] + near {
+            return None;
+        }
+        // The way from the corridor's end to the middle.
+        let (from, to) = if u < strip.along[0] {
+            (u, strip.along[0])
+        } else if u > strip.along[1] {
+            (strip.along[1], u)
+        } else {
+            (u, u)
+        };
+        let margin = 0.2 * strip.width();
+        let open = |c| view.blocked(c, strip.across[0] + margin, strip.across[1] - margin) <= IMPASSABLE;
+        if !(view.column(from)..=view.column(to)).all(open) {
+            return None;
+        }
+        ways[n] = u32::from(strip.along[0] <= u - reach[n] - ARM) + u32::from(strip.along[1] >= u + reach[n] + ARM);
+    }
+    let apart = angle_between(first.angle, second.angle).to_degrees();
+    let kind = match (ways[0], ways[1]) {
+        (2, 2) => JunctionKind::X,
+        (2, 1) | (1, 2) if apart < SQUARE_DEG => JunctionKind::Y,
+        (2, 1) | (1, 2) => JunctionKind::T,
+        (1, 1) => JunctionKind::L,
+        _ => return None,
+    };
+    Some(Meeting { kind, at, corridors: pair, reach })
+}

@@ -1,0 +1,124 @@
+"""groundplan evaluate: scores of a survey against a truth, or of the method on a suite."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable
+from typing import Any
+
+from groundplan._cli import terminal
+from groundplan._cli.arguments import count
+
+#: What each score is called, its unit, and its decimals.
+SCORES = {
+    "direction_error_deg": ("greatest error of a direction", " deg", 3),
+    "direction_extra": ("directions too many", "", 0),
+    "line_recall": ("lines found, of their length", "", 3),
+    "line_error_m": ("error of a line, median", " m", 3),
+    "junction_f1": ("junctions, F1", "", 3),
+    "junction_typed_f1": ("junctions of the right type, F1", "", 3),
+    "corridor_recall": ("corridors found, of their length", "", 3),
+    "corridor_precision": ("corridors that are ones, of their area", "", 3),
+}
+
+#: Columns of the suite's table: those before the labels are the same for every method.
+BEFORE = {"direction_error_deg": "error", "direction_extra": "extra", "line_recall": "lines"}
+LABELS = {"junction_f1": "F1", "junction_typed_f1": "typed", "corridor_recall": "recall", "corridor_precision": "prec"}
+
+
+def fill(own: argparse.ArgumentParser) -> None:
+    """Add the command's arguments."""
+    own.usage = "groundplan evaluate (SURVEY TRUTH | --suite NAME [--methods LIST]) [--json]"
+    own.add_argument("survey", metavar="SURVEY", nargs="?", help="a survey.json")
+    own.add_argument("truth", metavar="TRUTH", nargs="?", help="a truth.json, as groundplan simulate writes it")
+    own.add_argument("--json", action="store_true", help="print the scores as JSON")
+    group = own.add_argument_group("a suite of simulated maps")
+    group.add_argument(
+        "--suite", metavar="NAME", help="simulate, survey and score each of its cases, such as warehouses"
+    )
+    group.add_argument(
+        "--methods",
+        type=lambda text: [part.strip() for part in text.split(",")],
+        metavar="LIST",
+        help="values of labels.method to compare (default: the default method, and paper, Algorithm 1 as printed)",
+    )
+    group.add_argument("--workers", type=count, metavar="N", help="processes (default: one for each core)")
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Score a survey, or run a suite."""
+    if arguments.suite is not None:
+        if arguments.survey is not None:
+            arguments.parser.error("--suite makes its own surveys: give either that or SURVEY TRUTH")
+        _run_suite(arguments)
+        return
+    if arguments.truth is None:
+        arguments.parser.error("a SURVEY and its TRUTH are needed, or --suite NAME")
+    for flag in ("methods", "workers"):
+        if getattr(arguments, flag) is not None:
+            arguments.parser.error(f"--{flag} goes with --suite")
+    from groundplan.evaluate import score
+
+    scores = score(arguments.survey, arguments.truth)
+    if arguments.json:
+        _put_json(scores)
+        return
+    rows = []
+    for key, figure in scores.items():
+        name, unit, decimals = SCORES.get(key, (key, "", 3))
+        rows.append((name, _shown(figure, decimals), unit.strip()))
+    terminal.put("\n".join(terminal.columns(rows, "<>")) + "\n")
+
+
+def _run_suite(arguments: argparse.Namespace) -> None:
+    from groundplan.evaluate import _suite
+
+    with terminal.status() as status:
+        result = _suite.run(
+            arguments.suite,
+            arguments.methods,
+            workers=arguments.workers,
+            progress=lambda done, total: status(f"{done} of {total} cases"),
+        )
+    if arguments.json:
+        _put_json(result)
+    else:
+        terminal.put(suite_table(result))
+
+
+def _put_json(tree: dict[str, Any]) -> None:
+    import json
+
+    terminal.put(json.dumps(tree, indent=1, ensure_ascii=False) + "\n")
+
+
+def _shown(figure: float | None, decimals: int) -> str:
+    return "-" if figure is None else f"{figure:.{decimals}f}"
+
+
+def suite_table(result: dict[str, Any]) -> str:
+    """A line for each case, the mean and the worst; the methods side by side where the terminal has room."""
+    methods: list[str] = result["methods"]
+    rows = [(case["name"], case["scores"]) for case in result["cases"]]
+    rows += [(name, result[key]) for name, key in (("mean", "means"), ("worst", "worst"))]
+    cases = _block("", ["case", *BEFORE.values()], [[name, *_cells(by[methods[0]], BEFORE)] for name, by in rows])
+    blocks = [_block(m, [*LABELS.values()], [_cells(by[m], LABELS, 2) for _, by in rows]) for m in methods]
+    side_by_side = _beside(cases, *blocks)
+    if terminal.has_room(len(side_by_side[1])):
+        return "\n".join(side_by_side) + "\n"
+    return "\n\n".join("\n".join(_beside(cases, block)) for block in blocks) + "\n"
+
+
+def _cells(scores: dict[str, Any], keys: Iterable[str], decimals: int | None = None) -> list[str]:
+    return [_shown(scores[key], SCORES[key][2] if decimals is None else decimals) for key in keys]
+
+
+def _block(title: str, head: list[str], rows: list[list[str]]) -> list[str]:
+    """Lines of one width: the title, the names of the columns, the rows, and rules round the cases."""
+    lines = terminal.columns([head, *rows], "<" * (head[0] == "case") + ">" * len(head))
+    rule = "-" * max(map(len, lines))
+    return [line.ljust(len(rule)) for line in (title, lines[0], rule, *lines[1:-2], rule, *lines[-2:])]
+
+
+def _beside(*blocks: list[str]) -> list[str]:
+    return ["   ".join(parts).rstrip() for parts in zip(*blocks, strict=True)]

@@ -1,0 +1,117 @@
+"""groundplan figures: the paper's figures from a saved survey and its map."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from groundplan._cli import terminal
+from groundplan._cli.arguments import add_reading, read_map
+from groundplan._errors import FormatError
+
+if TYPE_CHECKING:
+    from groundplan.maps import Map
+    from groundplan.survey import Survey
+
+FORMATS = ("png", "svg", "pdf")
+
+
+def fill(own: argparse.ArgumentParser) -> None:
+    """Add the command's arguments."""
+    own.usage = "groundplan figures SURVEY [--map MAP] [-o DIR] [--format png,svg] [flags]"
+    own.epilog = "Give the flags for reading the map that the survey was made with. The names of the files are printed."
+    own.add_argument("survey", metavar="SURVEY", type=Path, help="a survey.json")
+    own.add_argument("--map", metavar="MAP", help="the surveyed map, where the survey's own name for it leads nowhere")
+    own.add_argument(
+        "-o", "--out", metavar="DIR", type=Path, help="where the figures go (default: figures, beside the survey)"
+    )
+    own.add_argument(
+        "--format", type=formats, default=("png", "svg"), metavar="png,svg", help="png, svg or pdf, or several of them"
+    )
+    own.add_argument("-q", "--quiet", action="store_true", help="print no names: only errors are told")
+    add_reading(own, frame=False)
+
+
+def formats(text: str) -> tuple[str, ...]:
+    """Formats with commas."""
+    chosen = tuple(dict.fromkeys(part.strip().lower() for part in text.split(",")))
+    wrong = [part for part in chosen if part not in FORMATS]
+    if wrong:
+        raise argparse.ArgumentTypeError(f"{wrong[0]!r} is none of {', '.join(FORMATS)}")
+    return chosen
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Draw the figures."""
+    from groundplan.survey import Survey
+
+    try:
+        survey = Survey.read(arguments.survey)
+    except FormatError as fault:
+        named = fault if fault.code == "survey.read" else FormatError(fault.code, f"{arguments.survey}: {fault}")
+        raise named from fault
+    source = arguments.map if arguments.map is not None else find_map(survey, arguments.survey)
+    with terminal.status(arguments.quiet) as status:
+        map = read_map(source, arguments, resolution=survey.map.resolution, origin=survey.map.origin)
+        agree(survey, map, arguments.survey, source, arguments.quiet)
+        status("drawing the figures")
+        from groundplan.figures import draw_figures
+
+        place = arguments.out if arguments.out is not None else arguments.survey.parent / "figures"
+        drawn = draw_figures(
+            survey, map, place, formats=arguments.format, progress=lambda what: status(f"drawing {what}")
+        )
+    if not arguments.quiet:
+        terminal.put("".join(f"{path}\n" for path in drawn))
+
+
+def find_map(survey: Survey, path: Path) -> str:
+    """The map that a survey names, from here or from beside the survey.
+
+    Raises
+    ------
+    FormatError
+        ``survey.source`` when it names none, or one that is not there.
+    """
+    if survey.source is None:
+        raise FormatError("survey.source", f"{path} does not say which map it is of", "--map MAP names it")
+    for place in (Path(survey.source), path.parent / survey.source):
+        if place.is_file():
+            return str(place)
+    raise FormatError(
+        "survey.source", f"{path} is of the map {survey.source}, which is not there", "--map MAP says where it is now"
+    )
+
+
+def agree(survey: Survey, map: Map, path: Path, source: str, quiet: bool) -> None:
+    """Refuse a map of another size; warn of one that reads otherwise than when it was surveyed.
+
+    Raises
+    ------
+    FormatError
+        ``survey.map``.
+    """
+    info = survey.map
+    if (info.width, info.height) != (map.width, map.height):
+        raise FormatError(
+            "survey.map",
+            f"{source} has {map.width} x {map.height} pixels, but {path} is of a map of {info.width} x {info.height}",
+            "--map MAP names the one that was surveyed",
+        )
+    import numpy as np
+
+    from groundplan.maps import UNKNOWN
+
+    counts = np.zeros(256, np.int64)
+    for row in map.pixels:  # no copy of a map that may be larger than memory
+        counts += np.bincount(row, minlength=256)
+    now = int(counts[map.states == UNKNOWN].sum())
+    then = round(float((survey.occupancy.unknown * survey.occupancy.pixels).sum()))
+    if now != then and not quiet:
+        total = map.width * map.height
+        terminal.say(
+            "warning",
+            f"{100 * now / total:.1f} % of {source} is unknown, and {100 * then / total:.1f} % was when it was "
+            "surveyed: it was read with other flags then",
+        )

@@ -1,0 +1,173 @@
+"""groundplan survey: from a map to its survey, picture and figures."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from groundplan._cli import terminal
+from groundplan._cli.arguments import add_reading, count, number, numbers, read_map
+
+if TYPE_CHECKING:
+    from groundplan.maps import Map
+    from groundplan.survey import Survey
+
+
+def fill(own: argparse.ArgumentParser) -> None:
+    """Add the command's arguments."""
+    own.usage = "groundplan survey MAP [-o DIR] [--figures] [--json] [flags]"
+    own.epilog = (
+        "Of the parameters, what a flag says beats the file, and the file beats the default; of several flags for one "
+        "parameter the last counts. groundplan parameters lists them."
+    )
+    own.add_argument("map", metavar="MAP", help="a map_server YAML, or a PGM, PNG, BMP, TIFF or JPEG with --resolution")
+    own.add_argument(
+        "-o",
+        "--out",
+        metavar="DIR",
+        type=Path,
+        help="where survey.json and survey.png go (default: the map's name with -survey, in the current directory)",
+    )
+    own.add_argument("--figures", action="store_true", help="draw the paper's figures 2 to 9 into DIR/figures too")
+    own.add_argument(
+        "--json",
+        action="store_true",
+        help="print the survey instead of the summary, and write files only where -o or --figures asks for them",
+    )
+    own.add_argument("-q", "--quiet", action="store_true", help="no summary, no warnings: only errors are told")
+    own.add_argument("--threads", type=count, metavar="N", help="at most so many; any number gives the same survey")
+    group = own.add_argument_group("the method")
+    either = group.add_mutually_exclusive_group()
+    either.add_argument("--directions", action=_Set, name="directions.count", type=count, metavar="N", help="how many")
+    either.add_argument(
+        "--direction",
+        action=_Set,
+        name="directions.angles_deg",
+        type=numbers,
+        nargs="+",
+        metavar="DEG",
+        help="the directions themselves, in degrees in the map frame",
+    )
+    group.add_argument(
+        "--detail",
+        action=_Set,
+        name="lines.detail",
+        type=_detail,
+        metavar="HOW",
+        help="how fine: coarse, fine, or 0 (only the strongest lines) to 1 (default: found by itself)",
+    )
+    group.add_argument("--set", action=_Set, metavar="NAME=VALUE", help="any parameter; repeatable")
+    group.add_argument("--config", metavar="FILE", help="parameters from a TOML file")
+    add_reading(own, frame=True)
+
+
+#: A flag that says one thing of two takes the other back, wherever the file says that.
+_TAKES_BACK = {
+    "directions.count": "directions.angles_deg",
+    "directions.angles_deg": "directions.count",
+    "lines.detail": "lines.min_amplitude",
+}
+
+
+class _Set(argparse.Action):
+    """Parameters in the order in which they were typed."""
+
+    def __init__(self, *args: Any, name: str | None = None, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self.name = name
+        self.dest = "settings"
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, flag: str | None = None
+    ) -> None:
+        settings = dict(namespace.settings or {})
+        if self.name is None:
+            from groundplan.parameters import named, parse
+
+            settings |= named(dict([parse(values)]))
+        else:
+            if self.name in _TAKES_BACK:
+                settings[_TAKES_BACK[self.name]] = None
+            settings[self.name] = values
+        namespace.settings = settings
+
+
+def _detail(text: str) -> Any:
+    return text if text in ("coarse", "fine") else number(text)
+
+
+def settings(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Default < file < flag, held to the table before any map is read."""
+    from groundplan._errors import ParameterError
+    from groundplan.parameters import named, read_toml, resolve
+
+    own = named(read_toml(arguments.config)) if arguments.config else {}
+    try:
+        resolve(own)
+    except ParameterError as fault:
+        raise ParameterError(fault.code, f"{arguments.config}: {fault}", fault.hint) from fault
+    own |= arguments.settings or {}
+    resolve(own)
+    return own
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Survey a map."""
+    import dataclasses
+
+    import groundplan
+
+    chosen = settings(arguments)
+    origin = arguments.origin
+    if origin is not None and len(origin) not in (2, 3):
+        arguments.parser.error(f"--origin has {len(origin)} numbers; it takes 2 or 3: X Y [YAW]")
+    name = Path(arguments.map).name
+    with terminal.status(arguments.quiet) as status:
+        map = read_map(arguments.map, arguments, resolution=arguments.resolution, origin=origin)
+        found = terminal.working(
+            status, f"surveying {name}", lambda: groundplan.survey(map, threads=arguments.threads, **chosen)
+        )
+        named = dataclasses.replace(found.map, image=printable(found.map.image))
+        found = dataclasses.replace(found, map=named, source=printable(arguments.map))
+        written = write(arguments, found, map, status)
+    if arguments.json:
+        terminal.put(found.to_json())
+    if not arguments.quiet:
+        from groundplan._cli.summary import summary
+
+        if not arguments.json:
+            terminal.put(summary(found))
+        for warning in found.warnings:
+            terminal.say("warning", f"{warning.message} [{warning.code}]")
+        for place in written:
+            terminal.say("wrote", place)
+
+
+def printable(path: str) -> str:
+    """A path that UTF-8 can say: a file name may hold any bytes."""
+    return os.fsencode(path).decode("utf-8", "replace")
+
+
+def write(arguments: argparse.Namespace, survey: Survey, map: Map, status: terminal.Status) -> list[str]:
+    """Write the files that are asked for; the names of what was written."""
+    if arguments.json and arguments.out is None and not arguments.figures:
+        return []
+    from groundplan._files import whole
+    from groundplan.figures import draw_survey
+
+    place = arguments.out if arguments.out is not None else Path(f"{Path(arguments.map).stem}-survey")
+    status("drawing survey.png")
+    # The survey is put in place after its picture: where the disk is full there is neither.
+    with whole(place / "survey.json") as beside:
+        beside.write_text(survey.to_json(), encoding="utf-8")
+        draw_survey(survey, map, place / "survey.png")
+    written = [str(place / "survey.json"), str(place / "survey.png")]
+    if arguments.figures:
+        from groundplan.figures import draw_figures
+
+        status("drawing the figures")
+        drawn = draw_figures(survey, map, place / "figures", progress=lambda what: status(f"drawing {what}"))
+        written.append(f"{place / 'figures'}{os.sep} ({len(drawn)} files)")
+    return written

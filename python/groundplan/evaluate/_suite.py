@@ -1,0 +1,120 @@
+"""A suite from end to end: each case simulated, surveyed by each method, scored."""
+
+from __future__ import annotations
+
+import math
+import multiprocessing
+import signal
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from typing import Any
+
+from groundplan import simulate
+from groundplan.evaluate import _scores, score, suite
+from groundplan.parameters import resolve, table
+from groundplan.stages import cores
+from groundplan.survey import survey
+
+#: Algorithm 1 of the paper as printed, which every other method is held against.
+PRINTED = "paper"
+
+
+def methods() -> tuple[str, ...]:
+    """The default method of labelling, and beside it Algorithm 1 as printed."""
+    default = next(row.default for row in table() if row.name == "labels.method")
+    return tuple(dict.fromkeys((default, PRINTED)))
+
+
+def run(
+    name: str,
+    chosen: Sequence[str] | None = None,
+    *,
+    workers: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> dict[str, Any]:
+    """Score methods on every case of a suite.
+
+    Parameters
+    ----------
+    name
+        Of the suite.
+    chosen
+        Values of ``labels.method``; by default those of `methods`.
+    workers
+        Processes, one case each; by default one for each core. Any number gives the same scores.
+    progress
+        Called with how many cases are done, and how many there are.
+
+    Returns
+    -------
+    dict
+        ``suite``; ``methods``; ``cases``, each with its ``name``, ``options`` and, by method, ``scores``; ``means``
+        and ``worst``, by method, each score over the cases. A score that no case has is None.
+
+    Raises
+    ------
+    ParameterError
+        ``suite.unknown``, or a method that is none.
+    GroundplanError
+        ``extra.missing`` without SciPy or Shapely.
+    """
+    labellers = tuple(dict.fromkeys(chosen or methods()))
+    for method in labellers:
+        resolve({"labels.method": method})
+    cases = suite(name)
+    for module in ("scipy.optimize", "shapely"):
+        _scores.optional(module)
+    # Spawned, not forked: the same on every system, and safe whatever threads the caller has.
+    context = multiprocessing.get_context("spawn")
+    count = max(1, min(workers or cores(), len(cases)))
+    with ProcessPoolExecutor(count, mp_context=context, initializer=_die_of_interrupts) as pool:
+        futures = [pool.submit(_case, options, labellers) for _, options in cases]
+        try:
+            for done, future in enumerate(as_completed(futures), start=1):
+                future.result()
+                if progress is not None:
+                    progress(done, len(cases))
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    scores = [future.result() for future in futures]
+    return {
+        "suite": name,
+        "methods": list(labellers),
+        "cases": [
+            {"name": case, "options": options, "scores": by_method}
+            for (case, options), by_method in zip(cases, scores, strict=True)
+        ],
+        "means": {method: _over(_mean, [by[method] for by in scores]) for method in labellers},
+        "worst": {method: _over(_worst, [by[method] for by in scores]) for method in labellers},
+    }
+
+
+def _die_of_interrupts() -> None:
+    """Ctrl-C reaches the whole group of processes: a worker goes at once and without a word."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def _case(options: dict[str, Any], labellers: tuple[str, ...]) -> dict[str, dict[str, Any]]:
+    """Scores of one case by method."""
+    made = simulate.warehouse(**options)
+    surveys = {method: survey(made.map, threads=1, labels_method=method) for method in labellers}
+    return {method: score(found.to_dict(), made.truth) for method, found in surveys.items()}
+
+
+def _over(kind: Callable[[str, list[float]], float], scores: list[dict[str, Any]]) -> dict[str, float | None]:
+    """A figure over the cases for each score, of those that have it."""
+    result: dict[str, float | None] = {}
+    for key in scores[0]:
+        values = [float(entry[key]) for entry in scores if entry[key] is not None]
+        result[key] = kind(key, values) if values else None
+    return result
+
+
+def _mean(_: str, values: list[float]) -> float:
+    return round(math.fsum(values) / len(values), 4)
+
+
+def _worst(key: str, values: list[float]) -> float:
+    """Errors and what is too much are better small, shares better large."""
+    return max(values) if "error" in key or "extra" in key else min(values)

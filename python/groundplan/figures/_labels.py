@@ -1,0 +1,254 @@
+"""Labels on a map: ways and crossings, racks, regions, doors and pillars, each kind drawn when it is there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PathCollection, PolyCollection
+from matplotlib.colors import to_rgba
+from matplotlib.font_manager import FontProperties
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
+from matplotlib.textpath import TextPath
+from matplotlib.transforms import IdentityTransform
+
+from groundplan.figures import _style as ink
+from groundplan.survey import Label, Survey
+
+Points = npt.NDArray[np.float64]
+
+JUNCTION_NAMES = {"X": "X junction", "T": "T junction", "L": "L corner", "Y": "Y junction", "end": "Dead end"}
+#: Sizes of type along a corridor, points: it is left out where even the least does not fit.
+LEAST_TYPE, GREATEST_TYPE = 4.5, 9.0
+
+
+def draw_labels(axes: Axes, survey: Survey) -> None:
+    """Draw every label, the large beneath the small."""
+    kinds = {kind: survey.of_kind(kind) for kind in ("region", "rack", "corridor", "junction", "door", "pillar")}
+    dots = points_per_metre(axes)
+    draw_regions(axes, kinds["region"])
+    draw_racks(axes, kinds["rack"])
+    draw_corridors(axes, kinds["corridor"], kinds["junction"], dots)
+    draw_doors(axes, kinds["door"], survey)
+    draw_pillars(axes, kinds["pillar"])
+    draw_junctions(axes, kinds["junction"], kinds["corridor"], dots)
+
+
+def draw_walls(axes: Axes, survey: Survey, width: float = 1.1) -> None:
+    """Draw the abstraction in one colour."""
+    segments = survey.walls.points.reshape(-1, 2, 2)
+    axes.add_collection(
+        LineCollection(list(segments), colors=ink.WALL, linewidths=width, capstyle="round", zorder=4), autolim=False
+    )
+
+
+def key(survey: Survey) -> list[Artist]:
+    """What a legend says of the labels and walls that there are, with counts."""
+    entries: list[Artist] = []
+    if len(survey.walls):
+        entries.append(Line2D([], [], color=ink.WALL, lw=1.6, label="Wall"))
+    fills = (("corridor", "Corridor", ink.CORRIDOR, 0.35), ("rack", "Rack", ink.RACK, 0.55))
+    for kind, name, fill, alpha in (*fills, ("region", "Region", ink.REGION, 0.25)):
+        if count := len(survey.of_kind(kind)):
+            patch = Patch(facecolor=to_rgba(fill, alpha), edgecolor=fill, lw=0.8, label=f"{name} ({count})")
+            entries.append(patch)
+    for kind, fill in ink.JUNCTIONS.items():
+        if count := sum(label["type"] == kind for label in survey.of_kind("junction")):
+            entries.append(dot(fill, 7, f"{JUNCTION_NAMES[kind]} ({count})"))
+    if count := len(survey.of_kind("door")):
+        entries.append(Line2D([], [], color=ink.DOOR, lw=3, solid_capstyle="butt", label=f"Door ({count})"))
+    if count := len(survey.of_kind("pillar")):
+        entries.append(dot(ink.PILLAR, 4, f"Pillar ({count})"))
+    return entries
+
+
+def dot(fill: str, size: float, label: str) -> Line2D:
+    """A dot for a legend."""
+    return Line2D([], [], marker="o", ls="", color=fill, markersize=size, markeredgewidth=0, label=label)
+
+
+def points_per_metre(axes: Axes) -> float:
+    """Points of type to a metre of the map."""
+    low, high = axes.get_xlim()
+    box = axes.get_window_extent()
+    return float(box.width / axes.figure.dpi * 72 / (high - low))
+
+
+def draw_regions(axes: Axes, regions: Sequence[Label]) -> None:
+    """Thin outlined tints with a name, holes left out."""
+    for number, region in enumerate(regions):
+        rings = [region["polygon"], *region.get("holes", [])]
+        path = Path.make_compound_path(*(Path([*ring, ring[0]], closed=True) for ring in rings))
+        fill = ink.REGIONS[number % len(ink.REGIONS)]
+        patch = PathPatch(path, facecolor=to_rgba(fill, 0.2), edgecolor=to_rgba(fill, 0.9), lw=0.7, zorder=1)
+        axes.add_patch(patch)
+        if region.get("name"):
+            write(axes, region["at"], region["name"], 6.5, colour=ink.INK, zorder=8)
+
+
+def draw_racks(axes: Axes, racks: Sequence[Label]) -> None:
+    """Ochre polygons with a thin edge."""
+    polygons = [np.asarray(label["polygon"]) for label in racks if label.get("polygon")]
+    collection = PolyCollection(
+        polygons,
+        facecolors=[to_rgba(ink.RACK, 0.5)],
+        edgecolors=[to_rgba(ink.RACK, 0.9)],
+        linewidths=0.5,
+        zorder=2,
+    )
+    axes.add_collection(collection, autolim=False)
+
+
+def draw_corridors(axes: Axes, corridors: Sequence[Label], junctions: Sequence[Label], dots: float) -> None:
+    """Translucent polygons with their centre lines, and their names along these."""
+    # One shape for them all: where two cross, the tint is no deeper.
+    rings = [Path([*label["polygon"], label["polygon"][0]], closed=True) for label in corridors if label["polygon"]]
+    if rings:
+        fill = to_rgba(ink.CORRIDOR, 0.24)
+        axes.add_patch(PathPatch(Path.make_compound_path(*rings), facecolor=fill, edgecolor="none", lw=0, zorder=3))
+        outlines = [ring.vertices for ring in rings]
+        edge = to_rgba(ink.CORRIDOR, 0.6)
+        axes.add_collection(LineCollection(outlines, colors=[edge], linewidths=0.4, zorder=3.1), autolim=False)
+    lines = [np.asarray(corridor["axis"], dtype=np.float64) for corridor in corridors]
+    style = LineCollection(lines, colors=[to_rgba(ink.CORRIDOR, 0.95)], linewidths=0.8, linestyles="--", zorder=5)
+    axes.add_collection(style, autolim=False)
+    crossings = np.array([label["at"] for label in junctions], dtype=np.float64).reshape(-1, 2)
+    for corridor, line in zip(corridors, lines, strict=True):
+        name = corridor.get("name")
+        if not name:
+            continue
+        middle, room = widest_gap(line, crossings, 0.75 * corridor["width"])
+        size = min(0.62 * corridor["width"] * dots, room * dots / (0.72 * len(name)), GREATEST_TYPE)
+        if size >= LEAST_TYPE:
+            angle = math.degrees(math.atan2(*(line[-1] - line[0])[::-1]))
+            write(axes, middle, name, size, ink.CORRIDOR_INK, 7, (angle + 90.001) % 180 - 90.001)
+
+
+def widest_gap(line: Points, crossings: Points, near: float) -> tuple[Points, float]:
+    """Where along a centre line a name has most room between crossings: the place, and the room in metres."""
+    start, along = line[0], line[-1] - line[0]
+    length = float(np.hypot(*along))
+    if length == 0:
+        return start, 0.0
+    unit = along / length
+    relative = crossings - start
+    at, aside = relative @ unit, relative @ np.array([-unit[1], unit[0]])
+    on = at[(np.abs(aside) <= near) & (at > -near) & (at < length + near)]
+    stops = np.sort(np.concatenate([[0.0], np.clip(on, 0, length), [length]]))
+    gaps = np.diff(stops)
+    # Of gaps about as wide as the widest, the one nearest the middle: names in a row of aisles then line up.
+    middles = (stops[1:] + stops[:-1]) / 2
+    wide = gaps >= 0.85 * gaps.max()
+    best = np.flatnonzero(wide)[np.argmin(np.abs(middles[wide] - length / 2))]
+    return start + middles[best] * unit, float(gaps[best])
+
+
+def write(axes: Axes, at: Any, text: str, size: float, colour: str, zorder: float, angle: float = 0.0) -> None:
+    """Write centred on a place, with a light seam that keeps it legible on anything."""
+    seam = [withStroke(linewidth=max(1.2, 0.28 * size), foreground=(1, 1, 1, 0.85))]
+    axes.text(
+        at[0],
+        at[1],
+        text,
+        size=size,
+        color=colour,
+        ha="center",
+        va="center_baseline",
+        rotation=angle,
+        rotation_mode="anchor",
+        zorder=zorder,
+        clip_on=True,
+        path_effects=seam,
+    )
+
+
+def draw_junctions(axes: Axes, junctions: Sequence[Label], corridors: Sequence[Label], dots: float) -> None:
+    """Discs in the colour of their type, with its letter where there is room."""
+    widths = [corridor["width"] for corridor in corridors] or [2.5]
+    size = float(np.clip(0.7 * np.quantile(widths, 0.75) * dots, 4.5, 11.0))
+    for kind, fill in ink.JUNCTIONS.items():
+        at = np.array([label["at"] for label in junctions if label["type"] == kind], dtype=np.float64)
+        if not len(at):
+            continue
+        if kind == "end":
+            axes.scatter(
+                at[:, 0],
+                at[:, 1],
+                s=(0.7 * size) ** 2,
+                c=fill,
+                marker="s",
+                edgecolors="white",
+                linewidths=0.5,
+                zorder=9,
+            )
+            continue
+        axes.scatter(at[:, 0], at[:, 1], s=size**2, c=fill, edgecolors="white", linewidths=0.6, zorder=9)
+        if size >= 6:
+            letter = PathCollection(
+                [centred(kind)],
+                sizes=[(0.62 * size) ** 2],
+                offsets=at,
+                offset_transform=axes.transData,
+                facecolors="white",
+                linewidths=0,
+                zorder=10,
+            )
+            # Its size alone scales it; the offsets place it.
+            letter.set_transform(IdentityTransform())
+            axes.add_collection(letter, autolim=False)
+
+
+def centred(letter: str) -> Path:
+    """A bold letter about the origin, one unit high."""
+    path = TextPath((0, 0), letter, size=1, prop=FontProperties(family="DejaVu Sans", weight="bold"))
+    low, high = path.vertices.min(axis=0), path.vertices.max(axis=0)
+    return Path((path.vertices - (low + high) / 2) / (high[1] - low[1]), path.codes)
+
+
+def draw_doors(axes: Axes, doors: Sequence[Label], survey: Survey) -> None:
+    """Short thick strokes along the wall that each is in."""
+    strokes = []
+    for door in doors:
+        at = np.asarray(door["at"], dtype=np.float64)
+        along = door_direction(door, at, survey) * max(float(door["width"]), 1e-6) / 2
+        strokes.append(np.stack([at - along, at + along]))
+    axes.add_collection(
+        LineCollection(strokes, colors=ink.DOOR, linewidths=3, capstyle="butt", zorder=6), autolim=False
+    )
+
+
+def door_direction(door: Label, at: Points, survey: Survey) -> Points:
+    """Unit vector along the opening.
+
+    That of its own axis where it has one, else of the nearest wall, else across the way from region to region.
+    """
+    along = np.array([1.0, 0.0])
+    if "axis" in door:
+        along = np.subtract(door["axis"][1], door["axis"][0])
+    elif len(survey.walls):
+        ends = survey.walls.points.reshape(-1, 2, 2)
+        walls = ends[:, 1] - ends[:, 0]
+        share = np.einsum("ij,ij->i", at - ends[:, 0], walls) / np.maximum(np.einsum("ij,ij->i", walls, walls), 1e-12)
+        nearest = ends[:, 0] + np.clip(share, 0, 1)[:, None] * walls
+        along = walls[np.argmin(np.hypot(*(nearest - at).T))]
+    else:
+        sides = [survey.labels[i]["at"] for i in door.get("between", []) if i is not None and "at" in survey.labels[i]]
+        if len(sides) == 2:
+            way = np.subtract(sides[1], sides[0])
+            along = np.array([-way[1], way[0]])
+    length = float(np.hypot(*along))
+    return along / length if length > 0 else np.array([1.0, 0.0])
+
+
+def draw_pillars(axes: Axes, pillars: Sequence[Label]) -> None:
+    """Small dots."""
+    at = np.array([pillar["at"] for pillar in pillars], dtype=np.float64).reshape(-1, 2)
+    axes.scatter(at[:, 0], at[:, 1], s=9, c=ink.PILLAR, edgecolors="white", linewidths=0.4, zorder=8)
