@@ -41,6 +41,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments.run(arguments)
         return DONE
     except KeyboardInterrupt:
+        if argv is None:
+            terminal.ignore_interrupts()
         terminal.say("error", "interrupted")
         if argv is None:
             terminal.leave_unfinished(INTERRUPTED)
@@ -58,6 +60,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BaseException as fault:  # a panic of the core is no Exception
         if isinstance(fault, SystemExit) or os.environ.get("GROUNDPLAN_DEBUG"):
             raise
-        terminal.say("error", f"this is a bug in Groundplan: {type(fault).__name__}: {fault}")
+        said = " ".join(f"{type(fault).__name__}: {fault}".split())
+        terminal.say("error", f"this is a bug in Groundplan: {said}")
         terminal.say("hint", "GROUNDPLAN_DEBUG=1 shows where; please report it with the command and the map")
         return BUG

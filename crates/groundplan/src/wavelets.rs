@@ -171,24 +171,25 @@ fn ridges(response: &Response) -> Vec<Ridge> {
 }
 
 /// Noise at each bin: the median of the narrowest response's magnitude around it. Where most of the surroundings are
-/// empty, the median of all that is not stands in.
+/// empty, a part of the median of all that is not stands in. The window is centred on each bin and nothing lies beyond
+/// the ends, so that a signal shifted or turned about has its noise shifted and turned about.
 fn noise(narrow: &[f64]) -> Vec<f64> {
     let magnitudes: Vec<f64> = narrow.iter().map(|v| v.abs()).collect();
-    let median = |values: &mut [f64]| {
-        let middle = values.len() / 2;
-        *values.select_nth_unstable_by(middle, f64::total_cmp).1
-    };
     let mut some: Vec<f64> = magnitudes.iter().copied().filter(|v| *v > 0.0).collect();
-    let least = if some.is_empty() { 0.0 } else { 0.25 * median(&mut some) };
-    // One window serves all bins of its middle half: noise does not change from bin to bin.
-    let stride = NOISE_BINS / 2;
+    let middle = some.len() / 2;
+    let least = if some.is_empty() { 0.0 } else { 0.25 * *some.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    let mut window: Vec<f64> = vec![0.0; 2 * NOISE_BINS + 1];
+    let mut exchange = |gone: f64, come: f64| {
+        let place = window.partition_point(|v| *v < gone);
+        window.remove(place);
+        window.insert(window.partition_point(|v| *v < come), come);
+        window[NOISE_BINS]
+    };
+    let at = |n: usize| magnitudes.get(n).copied().unwrap_or(0.0);
+    for n in 0..NOISE_BINS {
+        exchange(0.0, at(n));
+    }
     (0..magnitudes.len())
-        .step_by(stride)
-        .flat_map(|start| {
-            let from = start.saturating_sub(NOISE_BINS);
-            let to = (start + NOISE_BINS).min(magnitudes.len());
-            let level = median(&mut magnitudes[from..to].to_vec()).max(least);
-            std::iter::repeat_n(level, stride.min(magnitudes.len() - start))
-        })
+        .map(|n| exchange(n.checked_sub(NOISE_BINS + 1).map_or(0.0, at), at(n + NOISE_BINS)).max(least))
         .collect()
 }

@@ -6,6 +6,7 @@ import contextlib
 import errno
 import os
 import shutil
+import signal
 import sys
 import textwrap
 import threading
@@ -83,20 +84,21 @@ class Status:
     def __init__(self, quiet: bool = False) -> None:
         self._shown = not quiet and sys.stderr is not None and sys.stderr.isatty()
         self._since = time.monotonic()
-        self._length = 0
+        self._text = ""
 
     def __call__(self, text: str) -> None:
         """Show `text` in place of what stood there, unless the work has only begun."""
         if self._shown and time.monotonic() - self._since > _PATIENCE_S:
             text = text[: width() - 1]
-            self._write(f"\r{text:<{self._length}}")
-            self._length = len(text)
+            if text != self._text:
+                self._write(f"\r{text:<{len(self._text)}}")
+                self._text = text
 
     def clear(self) -> None:
         """Take the line away."""
-        if self._length:
-            self._write(f"\r{'':<{self._length}}\r")
-            self._length = 0
+        if self._text:
+            self._write(f"\r{'':<{len(self._text)}}\r")
+            self._text = ""
 
     def _write(self, text: str) -> None:
         with contextlib.suppress(OSError, UnicodeError):
@@ -135,11 +137,16 @@ def working(line: Status, sentence: str, task: Callable[[], T]) -> T:
     thread.start()
     while thread.is_alive():
         thread.join(0.25)
-        line(f"{sentence}, {time.monotonic() - since:.0f} s")
+        line(f"{sentence}, {int(time.monotonic() - since)} s")
     _unfinished = None
     if faults:
         raise faults[0]
     return results[0]
+
+
+def ignore_interrupts() -> None:
+    """Let the process end in peace: who presses Ctrl-C again wants no traceback of its ending."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def leave_unfinished(code: int) -> None:

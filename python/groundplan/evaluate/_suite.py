@@ -7,9 +7,11 @@ import multiprocessing
 import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
 from groundplan import simulate
+from groundplan._errors import GroundplanError
 from groundplan.evaluate import _scores, score, suite
 from groundplan.parameters import resolve, table
 from groundplan.stages import cores
@@ -41,7 +43,7 @@ def run(
     chosen
         Values of ``labels.method``; by default those of `methods`.
     workers
-        Processes, one case each; by default one for each core. Any number gives the same scores.
+        Processes; by default one for each core, and 1 is this process. Any number gives the same scores.
     progress
         Called with how many cases are done, and how many there are.
 
@@ -56,7 +58,7 @@ def run(
     ParameterError
         ``suite.unknown``, or a method that is none.
     GroundplanError
-        ``extra.missing`` without SciPy or Shapely.
+        ``extra.missing`` without SciPy or Shapely, ``suite.worker`` when a worker process ends early.
     """
     labellers = tuple(dict.fromkeys(chosen or methods()))
     for method in labellers:
@@ -64,20 +66,7 @@ def run(
     cases = suite(name)
     for module in ("scipy.optimize", "shapely"):
         _scores.optional(module)
-    # Spawned, not forked: the same on every system, and safe whatever threads the caller has.
-    context = multiprocessing.get_context("spawn")
-    count = max(1, min(workers or cores(), len(cases)))
-    with ProcessPoolExecutor(count, mp_context=context, initializer=_die_of_interrupts) as pool:
-        futures = [pool.submit(_case, options, labellers) for _, options in cases]
-        try:
-            for done, future in enumerate(as_completed(futures), start=1):
-                future.result()
-                if progress is not None:
-                    progress(done, len(cases))
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-    scores = [future.result() for future in futures]
+    scores = _scored([options for _, options in cases], labellers, workers or cores(), progress or (lambda *_: None))
     return {
         "suite": name,
         "methods": list(labellers),
@@ -88,6 +77,36 @@ def run(
         "means": {method: _over(_mean, [by[method] for by in scores]) for method in labellers},
         "worst": {method: _over(_worst, [by[method] for by in scores]) for method in labellers},
     }
+
+
+def _scored(
+    cases: list[dict[str, Any]], labellers: tuple[str, ...], workers: int, progress: Callable[[int, int], None]
+) -> list[dict[str, dict[str, Any]]]:
+    """Scores of each case by method, in the order of the cases."""
+    if workers == 1:
+        scores = []
+        for options in cases:
+            scores.append(_case(options, labellers))
+            progress(len(scores), len(cases))
+        return scores
+    # Spawned, not forked: the same on every system, and safe whatever threads the caller has.
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(min(workers, len(cases)), context, _die_of_interrupts) as pool:
+        try:
+            futures = [pool.submit(_case, options, labellers) for options in cases]
+            for done, future in enumerate(as_completed(futures), start=1):
+                future.result()
+                progress(done, len(cases))
+            return [future.result() for future in futures]
+        except BrokenProcessPool as fault:
+            raise GroundplanError(
+                "suite.worker",
+                "a worker process ended before its case was done",
+                "fewer --workers need less memory; a script that starts this guards it by if __name__ == '__main__'",
+            ) from fault
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
 
 
 def _die_of_interrupts() -> None:

@@ -68,7 +68,7 @@ def subdivision_and_dual(survey: Survey, view: Underlay) -> Figure:
         dot(ink.SUBDIVISION, 4, "Vertex"),
         Line2D([], [], color=ink.DUAL, lw=0.9, label="Link, connected"),
         Line2D([], [], color=ink.DUAL, lw=0.7, ls=(0, (3, 2)), label="Link, not"),
-        Line2D([], [], color=ink.DUAL, marker="s", ls="", ms=4, mew=0, label="Node"),
+        dot(ink.DUAL, 4, "Node", "s"),
     ]
     title = "Subdivision and its dual"
     figure, axes, _ = map_sheet(view.window(window), title, [survey.map.image or "map", part], handles)

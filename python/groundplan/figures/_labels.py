@@ -34,7 +34,7 @@ def draw_labels(axes: Axes, survey: Survey) -> None:
     """Draw every label, the large beneath the small."""
     kinds = {kind: survey.of_kind(kind) for kind in ("region", "rack", "corridor", "junction", "door", "pillar")}
     dots = points_per_metre(axes)
-    draw_regions(axes, kinds["region"])
+    draw_regions(axes, kinds["region"], bool(kinds["corridor"]))
     draw_racks(axes, kinds["rack"])
     draw_corridors(axes, kinds["corridor"], kinds["junction"], dots)
     draw_doors(axes, kinds["door"], survey)
@@ -62,7 +62,8 @@ def key(survey: Survey) -> list[Artist]:
             entries.append(patch)
     for kind, fill in ink.JUNCTIONS.items():
         if count := sum(label["type"] == kind for label in survey.of_kind("junction")):
-            entries.append(dot(fill, 7, f"{JUNCTION_NAMES[kind]} ({count})"))
+            marker = "s" if kind == "end" else "o"
+            entries.append(dot(fill, 6 if kind == "end" else 7, f"{JUNCTION_NAMES[kind]} ({count})", marker))
     if count := len(survey.of_kind("door")):
         entries.append(Line2D([], [], color=ink.DOOR, lw=3, solid_capstyle="butt", label=f"Door ({count})"))
     if count := len(survey.of_kind("pillar")):
@@ -70,9 +71,9 @@ def key(survey: Survey) -> list[Artist]:
     return entries
 
 
-def dot(fill: str, size: float, label: str) -> Line2D:
+def dot(fill: str, size: float, label: str, marker: str = "o") -> Line2D:
     """A dot for a legend."""
-    return Line2D([], [], marker="o", ls="", color=fill, markersize=size, markeredgewidth=0, label=label)
+    return Line2D([], [], marker=marker, ls="", color=fill, markersize=size, markeredgewidth=0, label=label)
 
 
 def points_per_metre(axes: Axes) -> float:
@@ -82,16 +83,31 @@ def points_per_metre(axes: Axes) -> float:
     return float(box.width / axes.figure.dpi * 72 / (high - low))
 
 
-def draw_regions(axes: Axes, regions: Sequence[Label]) -> None:
-    """Thin outlined tints with a name, holes left out."""
+def draw_regions(axes: Axes, regions: Sequence[Label], named: bool) -> None:
+    """Thin outlined tints with a name, holes left out; `named` when corridors have theirs."""
     for number, region in enumerate(regions):
-        rings = [region["polygon"], *region.get("holes", [])]
-        path = Path.make_compound_path(*(Path([*ring, ring[0]], closed=True) for ring in rings))
+        # What winds the other way is left out of the tint.
+        holes = [wound(hole, -1) for hole in region.get("holes", [])]
+        path = Path.make_compound_path(*(closed(ring) for ring in (wound(region["polygon"], 1), *holes)))
         fill = ink.REGIONS[number % len(ink.REGIONS)]
         patch = PathPatch(path, facecolor=to_rgba(fill, 0.2), edgecolor=to_rgba(fill, 0.9), lw=0.7, zorder=1)
         axes.add_patch(patch)
-        if region.get("name"):
+        # Corridors have names of their own, in the same place.
+        if region.get("name") and not (named and region.get("use") == "corridor"):
             write(axes, region["at"], region["name"], 6.5, colour=ink.INK, zorder=8)
+
+
+def wound(ring: Sequence[Sequence[float]], side: int) -> Points:
+    """A ring counter-clockwise (1) or clockwise (-1), (N, 2)."""
+    points = np.asarray(ring, dtype=np.float64)
+    x, y = points.T
+    doubled_area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+    return points if doubled_area * side >= 0 else points[::-1]
+
+
+def closed(ring: Points) -> Path:
+    """A ring as a path."""
+    return Path(np.concatenate([ring, ring[:1]]), closed=True)
 
 
 def draw_racks(axes: Axes, racks: Sequence[Label]) -> None:
@@ -110,7 +126,7 @@ def draw_racks(axes: Axes, racks: Sequence[Label]) -> None:
 def draw_corridors(axes: Axes, corridors: Sequence[Label], junctions: Sequence[Label], dots: float) -> None:
     """Translucent polygons with their centre lines, and their names along these."""
     # One shape for them all: where two cross, the tint is no deeper.
-    rings = [Path([*label["polygon"], label["polygon"][0]], closed=True) for label in corridors if label["polygon"]]
+    rings = [closed(wound(label["polygon"], 1)) for label in corridors if label.get("polygon")]
     if rings:
         fill = to_rgba(ink.CORRIDOR, 0.24)
         axes.add_patch(PathPatch(Path.make_compound_path(*rings), facecolor=fill, edgecolor="none", lw=0, zorder=3))
@@ -244,6 +260,11 @@ def door_direction(door: Label, at: Points, survey: Survey) -> Points:
         if len(sides) == 2:
             way = np.subtract(sides[1], sides[0])
             along = np.array([-way[1], way[0]])
+        # Regions seldom face each other squarely: the door is along what the map is along.
+        angles = survey.directions.angles
+        if len(angles):
+            lines = np.column_stack([np.cos(angles), np.sin(angles)])
+            along = lines[np.argmax(np.abs(lines @ along))]
     length = float(np.hypot(*along))
     return along / length if length > 0 else np.array([1.0, 0.0])
 

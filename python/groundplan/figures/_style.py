@@ -22,7 +22,8 @@ CORRIDOR, CORRIDOR_INK = "#009e73", "#00533c"
 RACK, REGION, DOOR, PILLAR = "#c79a2b", "#56b4e9", "#0b5cd6", "#4d2a7f"
 JUNCTIONS = {"X": "#0072b2", "T": "#d1360f", "L": "#e69f00", "Y": "#9a5fb4", "end": "#70757a"}
 SUBDIVISION, DUAL = "#c8321e", "#1f6fc4"
-REGIONS = ("#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#0072b2", "#b5a800", "#d55e00", "#8f7fd1")
+# Neither a rack's ochre nor a corridor's green is among the tints.
+REGIONS = ("#56b4e9", "#cc79a7", "#8f7fd1", "#b5a800", "#0072b2", "#d97a5b", "#6e7781")
 DIRECTIONS = (
     "#0072b2",
     "#d55e00",

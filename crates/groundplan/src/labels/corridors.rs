@@ -63,6 +63,8 @@ const CLOSED: f64 = 40.0;
 const DENSE: f64 = 0.6;
 /// Least share of a corridor's length that is walled on both sides.
 const LEAST_WALLED: f64 = 0.2;
+/// Least share of that which has more than posts on one side.
+const LEAST_FACED: f64 = 0.55;
 /// Strips that overlap across by more than this share of the narrower one are rivals.
 const RIVAL: f64 = 0.25;
 
@@ -88,7 +90,7 @@ fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
                 let margin = INNER.min(0.25 * width);
                 let within = (low + 1..high).filter(|&n| offsets[n] - across[0] > margin && across[1] - offsets[n] > margin);
                 let inner: Vec<&[bool]> = within.map(|n| pieces[n].as_slice()).collect();
-                let columns = columns(view, [&sides[low], &sides[high]], &inner, across);
+                let columns = columns(view, [&sides[low], &sides[high]], [&pieces[low], &pieces[high]], &inner, across);
                 let found = strips(view, &columns, 0..view.size[0], across, parameters.labels_min_aspect);
                 candidates.extend(found.into_iter().map(|strip| (strip, columns.clone())));
             }
@@ -156,8 +158,10 @@ fn piece(covered: &[bool], cell: f64) -> Vec<bool> {
 struct Column {
     /// Share of it that is not free.
     blocked: f64,
-    /// Structure lies on both sides.
+    /// Structure lies on both sides, or a bay's gap in it.
     walled: bool,
+    /// Structure of some length lies on one side at least.
+    faced: bool,
 }
 
 impl Column {
@@ -174,7 +178,7 @@ impl Column {
     }
 }
 
-fn columns(view: &Turned, sides: [&[bool]; 2], inner: &[&[bool]], across: [f64; 2]) -> Vec<Column> {
+fn columns(view: &Turned, sides: [&[bool]; 2], faces: [&[bool]; 2], inner: &[&[bool]], across: [f64; 2]) -> Vec<Column> {
     let margin = MARGIN.min(0.2 * (across[1] - across[0]));
     (0..view.size[0])
         .map(|c| Column {
@@ -183,6 +187,7 @@ fn columns(view: &Turned, sides: [&[bool]; 2], inner: &[&[bool]], across: [f64; 
                 view.blocked(c, across[0] + margin, across[1] - margin).max(least)
             },
             walled: sides.iter().all(|side| side[c]),
+            faced: faces.iter().any(|face| face[c]),
         })
         .collect()
 }
@@ -194,11 +199,12 @@ fn strips(view: &Turned, columns: &[Column], range: std::ops::Range<usize>, acro
     let mut found = Vec::new();
     for (from, to) in best_pieces(&scores) {
         let piece = &columns[range.start + from..range.start + to];
+        let faced = piece.iter().filter(|c| c.walled && c.faced).count() as f64 * view.cell;
         let walled = piece.iter().filter(|c| c.walled && c.blocked < 0.5).count() as f64 * view.cell;
         let along = [view.along(range.start + from), view.along(range.start + to)];
         let score = scores[from..to].iter().sum::<f64>() * view.cell;
         let strip = Strip { direction: view.direction, along, across, walled, score };
-        if strip.length() >= aspect * strip.width() && walled >= LEAST_WALLED * strip.length() {
+        if strip.length() >= aspect * strip.width() && walled >= LEAST_WALLED * strip.length() && faced >= LEAST_FACED * walled {
             found.push(strip);
         }
     }

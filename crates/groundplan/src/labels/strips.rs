@@ -6,10 +6,14 @@ use super::turned::Turned;
 use super::{Evidence, Label};
 use crate::grid::{State, tidy};
 
+/// A corridor that meets no other is at least so many times as long as wide.
+const ALONE: f64 = 4.0;
+/// A corridor that meets one other goes on beyond it for so many times its width, or it is a niche at its side.
+const NICHE: f64 = 1.5;
+
 pub fn find(evidence: &Evidence) -> Vec<Label> {
     let views: Vec<Turned> = (0..evidence.directions.angles.len()).map(|d| Turned::new(evidence, d)).collect();
-    let strips = corridors::find(evidence, &views);
-    let meetings = junctions::find(&views, &strips);
+    let (strips, meetings) = connected(&views, corridors::find(evidence, &views));
     let extents = extents(&views, &strips, &meetings);
     let mut free: Vec<u32> = (0..evidence.subdivision.faces() as u32)
         .filter(|&face| evidence.occupancy.states[face as usize] == State::Free)
@@ -41,6 +45,29 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
     }
     labels.extend(junctions);
     labels
+}
+
+/// A strip that leads nowhere is a niche: it goes, and what met it is judged again.
+fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeting>) {
+    loop {
+        let meetings = junctions::find(views, &strips);
+        let leads = |n: usize| {
+            let met = meetings.iter().filter(|m| m.corridors.contains(&n));
+            let reach = met.clone().map(|m| m.reach[usize::from(m.corridors[1] == n)]).sum::<f64>();
+            let beyond = strips[n].length() - reach;
+            match met.count() {
+                0 => strips[n].length() >= ALONE * strips[n].width(),
+                1 => beyond >= NICHE * strips[n].width(),
+                _ => true,
+            }
+        };
+        let stays: Vec<bool> = (0..strips.len()).map(leads).collect();
+        if stays.iter().all(|&s| s) {
+            return (strips, meetings);
+        }
+        let mut flags = stays.into_iter();
+        strips.retain(|_| flags.next().unwrap_or(false));
+    }
 }
 
 /// Where each corridor begins and ends, along: its walled part, and on to the middle of the junctions at its ends.
