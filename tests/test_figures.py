@@ -15,8 +15,7 @@ from PIL import Image
 
 import groundplan
 from groundplan import Map, Survey
-from groundplan.figures import _labels, draw_figures, draw_survey
-from groundplan.figures._style import FREE, OCCUPIED
+from groundplan.figures import _labels, _style, draw_figures, draw_survey
 from groundplan.figures._underlay import underlay
 
 FREE_PIXEL, UNKNOWN_PIXEL, OCCUPIED_PIXEL = 254, 205, 0
@@ -117,8 +116,8 @@ def test_every_kind_of_label_is_drawn_and_counted_in_the_legend(tmp_path: Path) 
         survey, labels=every_label(), map=dataclasses.replace(survey.map, image="$a$ 図.png")
     )
     drawn = colours_in(draw_survey(labelled, map, tmp_path / "survey.png"))
-    assert {rgb(colour) for colour in _labels.ink.JUNCTIONS.values()} <= drawn
-    assert {rgb(_labels.ink.DOOR), rgb(_labels.ink.PILLAR)} <= drawn
+    assert {rgb(colour) for colour in _style.JUNCTIONS.values()} <= drawn
+    assert {rgb(_style.DOOR), rgb(_style.PILLAR)} <= drawn
     entries = [str(entry.get_label()) for entry in _labels.key(labelled)]
     assert entries == [
         "Wall",
@@ -150,6 +149,12 @@ def test_a_name_stands_in_the_widest_gap_between_crossings() -> None:
     assert room == 7.0
 
 
+def test_centre_lines_that_cross_are_known() -> None:
+    line = np.array([[0.0, 0.0], [10.0, 0.0]])
+    across, parallel, short = ([[4.0, -1.0], [4.0, 1.0]], [[0.0, 1.0], [9.0, 1.0]], [[7.0, 1.0], [7.0, 0.5]])
+    assert _labels.meetings(line, [line, *map(np.array, (across, parallel, short))]).tolist() == [[4.0, 0.0]]
+
+
 def test_walls_a_pixel_wide_outlive_the_reduction() -> None:
     picture = np.full((500, 900), FREE_PIXEL, dtype=np.uint8)
     picture[123] = picture[:, 457] = OCCUPIED_PIXEL
@@ -165,7 +170,8 @@ def test_the_view_is_what_is_known_in_the_map_frame(yaw: float) -> None:
     view = underlay(groundplan.from_array(two_rooms(), 0.05, (3.0, 4.0, yaw)), margin=0.0)
     corners = np.array([[1.0, 1.0], [9.0, 1.0], [9.0, 5.0], [1.0, 5.0]])
     turn = np.array([[math.cos(yaw), math.sin(yaw)], [-math.sin(yaw), math.cos(yaw)]])
-    low, high = (corners @ turn).min(axis=0) + (3, 4), (corners @ turn).max(axis=0) + (3, 4)
+    placed = corners @ turn + np.array([3.0, 4.0])
+    low, high = placed.min(axis=0), placed.max(axis=0)
     # The margin is one pixel at least, and the size a whole number of pixels.
     assert view.extent == pytest.approx((low[0], high[0], low[1], high[1]), abs=0.11)
 
@@ -181,7 +187,7 @@ def test_a_pixel_of_the_map_is_a_whole_number_of_dots(tmp_path: Path) -> None:
     row = drawn[len(drawn) // 2 : len(drawn) // 2 + 60, 300:-300]
     # No dot between black and white: each belongs to one pixel of the map.
     seen = {tuple(colour) for colour in row.reshape(-1, 3).tolist()}
-    assert seen == {rgb(FREE), rgb(OCCUPIED)}
+    assert seen == {rgb(_style.FREE), rgb(_style.OCCUPIED)}
 
 
 def test_nothing_is_left_half_written(tmp_path: Path) -> None:

@@ -36,17 +36,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     SystemExit
         For ``--help`` and wrong flags, as argparse does.
     """
+    if argv is None:
+        terminal.hear_one_interrupt()
     try:
         arguments = parser().parse(argv)
         arguments.run(arguments)
         return DONE
     except KeyboardInterrupt:
-        if argv is None:
-            terminal.ignore_interrupts()
-        terminal.say("error", "interrupted")
-        if argv is None:
-            terminal.leave_unfinished(INTERRUPTED)
-        return INTERRUPTED
+        return _interrupted(argv)
     except BrokenPipeError:
         return UNREAD
     except GroundplanError as fault:
@@ -58,9 +55,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         terminal.say("error", "this computer has not enough memory for that")
         return FILES
     except BaseException as fault:  # a panic of the core is no Exception
+        if terminal.interrupted():
+            return _interrupted(argv)
         if isinstance(fault, SystemExit) or os.environ.get("GROUNDPLAN_DEBUG"):
             raise
         said = " ".join(f"{type(fault).__name__}: {fault}".split())
         terminal.say("error", f"this is a bug in Groundplan: {said}")
         terminal.say("hint", "GROUNDPLAN_DEBUG=1 shows where; please report it with the command and the map")
         return BUG
+
+
+def _interrupted(argv: Sequence[str] | None) -> int:
+    terminal.say("error", "interrupted")
+    if argv is None:
+        terminal.leave_unfinished(INTERRUPTED)
+    return INTERRUPTED

@@ -12,7 +12,8 @@ use crate::radiograms::weight;
 /// What lies in the faces and on the edges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Occupancy {
-    /// O(face): average occupancy of its pixels, 0 to 1; unknown pixels count 0.5, the prior of an occupancy grid.
+    /// O(face): average occupancy of its pixels, 0 to 1; unknown pixels count 0.5, the prior of an occupancy grid. A
+    /// sliver without pixels has that of the pixel which it lies in; so have the two shares that follow.
     pub faces: Vec<f64>,
     /// Share of unknown pixels of each face, 0 to 1.
     pub unknown: Vec<f64>,
@@ -56,9 +57,15 @@ pub fn find_occupancy(
     threads: usize,
 ) -> Occupancy {
     let sums = face_sums(grid, arrangement, threads);
-    let share = |part: i64, of: i64| if of > 0 { tidy(part as f64 / of as f64) } else { 0.0 };
-    let faces: Vec<f64> = sums.iter().map(|s| share(s.percent, 100 * s.pixels)).collect();
-    let unknown: Vec<f64> = sums.iter().map(|s| share(s.unknown, s.pixels)).collect();
+    // A sliver between the pixels' centres has no pixels: it is what the pixel under its middle is.
+    let evidence: Vec<Sums> = sums
+        .iter()
+        .zip(&arrangement.face_starts)
+        .map(|(sums, &first)| if sums.pixels > 0 { *sums } else { pixel_under(grid, arrangement, first) })
+        .collect();
+    let share = |part: i64, of: i64| tidy(part as f64 / of as f64);
+    let faces: Vec<f64> = evidence.iter().map(|s| share(s.percent, 100 * s.pixels)).collect();
+    let unknown: Vec<f64> = evidence.iter().map(|s| share(s.unknown, s.pixels)).collect();
     let state = |(&occupancy, &unknown): (&f64, &f64)| {
         if unknown > 0.5 {
             State::Unknown
@@ -72,9 +79,27 @@ pub fn find_occupancy(
         states: faces.iter().zip(&unknown).map(state).collect(),
         faces,
         unknown,
-        free: sums.iter().map(|s| share(s.free, s.pixels)).collect(),
+        free: evidence.iter().map(|s| share(s.free, s.pixels)).collect(),
         pixels: sums.iter().map(|s| s.pixels.unsigned_abs()).collect(),
         edges: edge_occupancy(grid, arrangement, directions, lines, gradients, parameters),
+    }
+}
+
+/// The pixel that the middle of a face's vertices lies in.
+fn pixel_under(grid: &Grid, arrangement: &Arrangement, first: u32) -> Sums {
+    let (mut count, mut x, mut y) = (0.0, 0.0, 0.0);
+    for half in arrangement.cycle(first) {
+        let [vx, vy] = arrangement.vertices[arrangement.start(half) as usize];
+        (count, x, y) = (count + 1.0, x + vx, y + vy);
+    }
+    let (column, row) = ((x / count) as usize, (y / count) as usize);
+    let value = usize::from(grid.row(row.min(grid.frame.height - 1))[column.min(grid.frame.width - 1)]);
+    let state = grid.table.states[value];
+    Sums {
+        percent: i64::from(grid.table.occupancy[value]),
+        unknown: i64::from(state == State::Unknown),
+        free: i64::from(state == State::Free),
+        pixels: 1,
     }
 }
 

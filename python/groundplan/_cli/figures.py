@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def find_map(survey: Survey, path: Path) -> str:
-    """The map that a survey names, from here or from beside the survey.
+    """The map that a survey names, seen from here, from beside the survey, or from a directory that holds it.
 
     Raises
     ------
@@ -76,9 +76,10 @@ def find_map(survey: Survey, path: Path) -> str:
     """
     if survey.source is None:
         raise FormatError("survey.source", f"{path} does not say which map it is of", "--map MAP names it")
-    for place in (Path(survey.source), path.parent / survey.source):
-        if place.is_file():
-            return str(place)
+    # The last are where the survey was made, if it was written to a directory below.
+    for place in (Path(), *path.absolute().parents):
+        if (place / survey.source).is_file():
+            return str(place / survey.source)
     raise FormatError(
         "survey.source", f"{path} is of the map {survey.source}, which is not there", "--map MAP says where it is now"
     )

@@ -22,6 +22,7 @@ T = TypeVar("T")
 _PATIENCE_S = 0.8
 
 _unfinished: threading.Thread | None = None
+_hears = threading.Event()
 
 
 def put(text: str) -> None:
@@ -144,9 +145,21 @@ def working(line: Status, sentence: str, task: Callable[[], T]) -> T:
     return results[0]
 
 
-def ignore_interrupts() -> None:
-    """Let the process end in peace: who presses Ctrl-C again wants no traceback of its ending."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+def hear_one_interrupt() -> None:
+    """Raise KeyboardInterrupt at the first Ctrl-C only: one more would break the clearing up after it."""
+
+    def interrupt(*_: object) -> None:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        raise KeyboardInterrupt
+
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else the caller wants it otherwise
+        signal.signal(signal.SIGINT, interrupt)
+        _hears.set()
+
+
+def interrupted() -> bool:
+    """Whether Ctrl-C was heard, whatever became of the exception."""
+    return _hears.is_set() and signal.getsignal(signal.SIGINT) is signal.SIG_IGN
 
 
 def leave_unfinished(code: int) -> None:

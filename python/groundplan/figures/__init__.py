@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from groundplan.figures._details import coarse_and_fine
 from groundplan.figures._directions import directions, radiograms
 from groundplan.figures._dual import abstraction, connectivity, edge_features, subdivision_and_dual
-from groundplan.figures._labelled import labelled, title_of
+from groundplan.figures._labelled import labelled
 from groundplan.figures._style import DPI, save, style
 from groundplan.figures._underlay import Underlay, underlay
 from groundplan.maps import Map
@@ -41,7 +41,7 @@ def draw_survey(survey: Survey, map: Map, path: str | os.PathLike[str]) -> Path:
     """
     target = Path(path)
     with style():
-        figure, dpi = labelled(survey, underlay(map), title_of(survey, target))
+        figure, dpi = labelled(survey, underlay(map))
         return save(figure, target, dpi)
 
 
@@ -85,7 +85,7 @@ def figures(survey: Survey, map: Map, progress: Callable[[str], None]) -> Iterat
         progress(name)
         yield name, draw(), DPI
     progress("figure-8-labels")
-    yield "figure-8-labels", *labelled(survey, whole, title_of(survey))
+    yield "figure-8-labels", *labelled(survey, whole)
     progress("figure-9-coarse-and-fine")
     yield "figure-9-coarse-and-fine", _compared(survey, map, small), DPI
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from groundplan.figures._dual import draw_connectivity, draw_subdivision
-from groundplan.figures._labelled import counted, draw_found
+from groundplan.figures._labelled import counted, draw_found, name_of
 from groundplan.figures._labels import key
 from groundplan.figures._panels import LEFT, RIGHT, blank, fitted, foot, foot_height, header, map_panel, scale_bar
 from groundplan.figures._underlay import Underlay
@@ -26,7 +26,7 @@ def coarse_and_fine(survey: Survey, coarse: Survey, fine: Survey, view: Underlay
     else:
         figure = blank(width, below + 2 * rise + above)
         corners = [(LEFT, below + rise), (LEFT, below)]
-    header(figure, "Coarse for labels, fine for paths", [survey.map.image or "map"])
+    header(figure, "Coarse for labels, fine for paths", [name_of(survey)])
     for (left, bottom), name, part in zip(corners, ("Coarse", "Fine"), (coarse, fine), strict=True):
         title = f"{name}: {counted(len(part.lines), 'line')}, {counted(len(part.subdivision.areas), 'face')}"
         axes = map_panel(figure, view, left, bottom, wide, title)

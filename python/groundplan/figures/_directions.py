@@ -13,7 +13,7 @@ from matplotlib.patches import Circle
 from matplotlib.transforms import Affine2D
 
 from groundplan.figures import _style as ink
-from groundplan.figures._labelled import counted, degrees
+from groundplan.figures._labelled import counted, degrees, name_of
 from groundplan.figures._panels import LEFT, RIGHT, blank, fitted, header, map_panel, place, scale_bar
 from groundplan.figures._underlay import Underlay
 from groundplan.stages import Radiogram
@@ -41,7 +41,7 @@ def directions(survey: Survey, view: Underlay) -> Figure:
         axes = map_panel(figure, view, LEFT, plot[1] + 0.9, wide)
         chart = place(figure, LEFT, 0.45, *plot)
     count = counted(len(survey.directions), "dominant direction")
-    header(figure, f"{count} from oriented gradients".capitalize(), [survey.map.image or "map"])
+    header(figure, f"{count} from oriented gradients".capitalize(), [name_of(survey)])
     view.draw(axes)
     scale_bar(axes, view.extent, wide)
     compass(axes, view, survey.directions.angles)
@@ -136,7 +136,7 @@ def radiograms(survey: Survey, view: Underlay) -> Figure:
     shown = survey.radiograms[:MOST_RADIOGRAMS]
     if not shown:
         figure = blank(6, 2)
-        header(figure, "No direction, no radiogram", [survey.map.image or "map"])
+        header(figure, "No direction, no radiogram", [name_of(survey)])
         return figure
     columns = min(2, len(shown))
     box_wide, box_high, chart, gap = 4.7, 4.7, 1.25, 0.75
@@ -148,7 +148,7 @@ def radiograms(survey: Survey, view: Underlay) -> Figure:
     widths = [max(row[column][0] for row in rows if column < len(row)) for column in range(columns)]
     figure = blank(max(4.5, LEFT + sum(widths) + gap * (columns - 1) + RIGHT), sum(heights) + 0.65)
     more = f", the first {len(shown)} of {len(survey.radiograms)}" if len(survey.radiograms) > len(shown) else ""
-    header(figure, f"Radiograms along each direction{more}", [survey.map.image or "map"])
+    header(figure, f"Radiograms along each direction{more}", [name_of(survey)])
     top = sum(heights)
     for number, (radiogram, (turn, side), window, (wide, high)) in enumerate(
         zip(shown, turns, windows, sizes, strict=True)

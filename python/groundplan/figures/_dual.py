@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from groundplan.figures import _style as ink
-from groundplan.figures._labelled import counted
+from groundplan.figures._labelled import counted, name_of
 from groundplan.figures._labels import dot
 from groundplan.figures._panels import blank, foot, header, map_sheet, place
 from groundplan.figures._underlay import Extent, Underlay
@@ -71,7 +71,7 @@ def subdivision_and_dual(survey: Survey, view: Underlay) -> Figure:
         dot(ink.DUAL, 4, "Node", "s"),
     ]
     title = "Subdivision and its dual"
-    figure, axes, _ = map_sheet(view.window(window), title, [survey.map.image or "map", part], handles)
+    figure, axes, _ = map_sheet(view.window(window), title, [name_of(survey), part], handles)
     view.draw(axes, faint=True)
     edges, links = edge_segments(survey), link_segments(survey)
     cogent, connected = survey.walls.cogent, survey.adjacency.connected
@@ -139,7 +139,7 @@ def edge_features(survey: Survey) -> Figure:
         ("freestanding wall", cogent & ~(along > t1), ink.FREESTANDING),
     )
     figure = blank(6.3, 6.0)
-    header(figure, "Feature space of edges", [survey.map.image or "map", counted(int(between.sum()), "inner edge")])
+    header(figure, "Feature space of edges", [name_of(survey), counted(int(between.sum()), "inner edge")])
     axes = place(figure, 0.62, 0.8, 5.0, 4.35)
     axes.axhspan(t1, 1.1, color=ink.WALL, alpha=0.06, lw=0)
     tint = Rectangle((t2, -0.1), 1.2 - t2, t1 + 0.1, facecolor=ink.FREESTANDING, alpha=0.06, lw=0)
@@ -176,7 +176,7 @@ def abstraction(survey: Survey, view: Underlay) -> Figure:
     handles = [
         Line2D([], [], color=colour, lw=1.8, label=f"{name} ({int(members.sum())})") for name, members, colour in groups
     ]
-    note = [survey.map.image or "map", counted(len(segments), "wall"), f"{float(lengths.sum()):.0f} m in all"]
+    note = [name_of(survey), counted(len(segments), "wall"), f"{float(lengths.sum()):.0f} m in all"]
     figure, axes, _ = map_sheet(view, "Abstraction", note, handles)
     view.draw(axes, faint=True)
     for _, members, colour in groups:
@@ -193,7 +193,7 @@ def connectivity(survey: Survey, view: Underlay) -> Figure:
     ]
     free = survey.occupancy.states == STATES.index("free")
     links = int((survey.adjacency.connected & free[survey.adjacency.faces].all(axis=1)).sum())
-    note = [survey.map.image or "map", counted(int(free.sum()), "free face"), counted(links, "connected link")]
+    note = [name_of(survey), counted(int(free.sum()), "free face"), counted(links, "connected link")]
     figure, axes, _ = map_sheet(view, "Connectivity", note, handles)
     view.draw(axes)
     draw_subdivision(axes, survey)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -14,9 +13,9 @@ from groundplan.figures._underlay import Underlay
 from groundplan.survey import Survey
 
 
-def labelled(survey: Survey, view: Underlay, title: str) -> tuple[Figure, float]:
+def labelled(survey: Survey, view: Underlay) -> tuple[Figure, float]:
     """The labelled map, and the dots per inch that show its pixels as they are."""
-    figure, axes, dpi = map_sheet(view, title, summary(survey), key(survey))
+    figure, axes, dpi = map_sheet(view, name_of(survey), summary(survey), key(survey))
     view.draw(axes)
     draw_found(axes, survey)
     return figure, dpi
@@ -52,6 +51,6 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
-def title_of(survey: Survey, path: Path | None = None) -> str:
-    """The name of the map's image, or of nothing better than the picture itself."""
-    return survey.map.image or (path.stem if path else "map")
+def name_of(survey: Survey) -> str:
+    """The name of the map's image, where it has one."""
+    return survey.map.image or "map"

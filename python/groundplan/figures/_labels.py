@@ -141,11 +141,27 @@ def draw_corridors(axes: Axes, corridors: Sequence[Label], junctions: Sequence[L
         name = corridor.get("name")
         if not name:
             continue
-        middle, room = widest_gap(line, crossings, 0.75 * corridor["width"])
+        stops = np.concatenate([crossings, meetings(line, lines)])
+        middle, room = widest_gap(line, stops, 0.75 * corridor["width"])
         size = min(0.62 * corridor["width"] * dots, room * dots / (0.72 * len(name)), GREATEST_TYPE)
         if size >= LEAST_TYPE:
             angle = math.degrees(math.atan2(*(line[-1] - line[0])[::-1]))
             write(axes, middle, name, size, ink.CORRIDOR_INK, 7, (angle + 90.001) % 180 - 90.001)
+
+
+def meetings(line: Points, others: Sequence[Points]) -> Points:
+    """Where a centre line crosses others, (N, 2)."""
+    ends = np.array([[other[0], other[-1]] for other in others])
+    start, along = line[0], line[-1] - line[0]
+    theirs, apart = ends[:, 1] - ends[:, 0], ends[:, 0] - start
+    turn = along[0] * theirs[:, 1] - along[1] * theirs[:, 0]
+    some = np.abs(turn) > 1e-9
+    theirs, apart, turn = theirs[some], apart[some], turn[some]
+    mine = (apart[:, 0] * theirs[:, 1] - apart[:, 1] * theirs[:, 0]) / turn
+    other = (apart[:, 0] * along[1] - apart[:, 1] * along[0]) / turn
+    both = (mine >= 0) & (mine <= 1) & (other >= 0) & (other <= 1)
+    points: Points = start + mine[both, None] * along
+    return points
 
 
 def widest_gap(line: Points, crossings: Points, near: float) -> tuple[Points, float]:

@@ -45,8 +45,8 @@ const BAY: f64 = 2.9;
 /// Pieces of side shorter than this are specks, metres.
 const SHORTEST_SIDE: f64 = 0.25;
 /// Structure on a line within a strip blocks it when it is so long, with gaps of so much, metres.
-const PIECE: f64 = 0.6;
-const PIECE_GAP: f64 = 0.3;
+const FACE: f64 = 0.6;
+const FACE_GAP: f64 = 0.3;
 /// Lines this near to a strip's side belong to it, metres.
 const INNER: f64 = 0.45;
 /// Walls lie this far within the strip's sides, metres.
@@ -64,7 +64,7 @@ const DENSE: f64 = 0.6;
 /// Least share of a corridor's length that is walled on both sides.
 const LEAST_WALLED: f64 = 0.2;
 /// Least share of that which has more than posts on one side.
-const LEAST_FACED: f64 = 0.55;
+const LEAST_FACED: f64 = 0.7;
 /// Strips that overlap across by more than this share of the narrower one are rivals.
 const RIVAL: f64 = 0.25;
 
@@ -75,8 +75,7 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
 
 fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
     let parameters = evidence.parameters;
-    let sides: Vec<Vec<bool>> = view.covered.iter().map(|covered| side(covered, view.cell)).collect();
-    let pieces: Vec<Vec<bool>> = view.covered.iter().map(|covered| piece(covered, view.cell)).collect();
+    let sides: Vec<Side> = view.covered.iter().map(|covered| Side::new(covered, view.cell)).collect();
     let offsets: Vec<f64> = view.lines.iter().map(|&n| evidence.lines.offsets[n]).collect();
     let mut candidates = Vec::new();
     for low in 0..offsets.len() {
@@ -89,8 +88,8 @@ fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
                 let across = [offsets[low], offsets[high]];
                 let margin = INNER.min(0.25 * width);
                 let within = (low + 1..high).filter(|&n| offsets[n] - across[0] > margin && across[1] - offsets[n] > margin);
-                let inner: Vec<&[bool]> = within.map(|n| pieces[n].as_slice()).collect();
-                let columns = columns(view, [&sides[low], &sides[high]], [&pieces[low], &pieces[high]], &inner, across);
+                let inner: Vec<&[bool]> = within.map(|n| sides[n].faces.as_slice()).collect();
+                let columns = columns(view, [&sides[low], &sides[high]], &inner, across);
                 let found = strips(view, &columns, 0..view.size[0], across, parameters.labels_min_aspect);
                 candidates.extend(found.into_iter().map(|strip| (strip, columns.clone())));
             }
@@ -103,7 +102,7 @@ fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
         let mut left = vec![(view.column(strip.along[0]), view.column(strip.along[1] - view.cell / 2.0) + 1)];
         for rival in &kept {
             let shared = strip.across[1].min(rival.across[1]) - strip.across[0].max(rival.across[0]);
-            let beside = shared.abs() < INNER && !dense(view, &pieces, &offsets, &strip, rival);
+            let beside = shared.abs() < INNER && !dense(view, &sides, &offsets, &strip, rival);
             if shared > RIVAL * strip.width().min(rival.width()) || beside {
                 let cut = (view.column(rival.along[0]), view.column(rival.along[1] - view.cell / 2.0) + 1);
                 left = left.into_iter().flat_map(|(a, b)| [(a, b.min(cut.0)), (a.max(cut.1), b)]).filter(|(a, b)| a < b).collect();
@@ -118,39 +117,41 @@ fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
 }
 
 /// True when enough structure lies between two strips side by side to part them.
-fn dense(view: &Turned, pieces: &[Vec<bool>], offsets: &[f64], one: &Strip, two: &Strip) -> bool {
+fn dense(view: &Turned, sides: &[Side], offsets: &[f64], one: &Strip, two: &Strip) -> bool {
     let columns = view.column(one.along[0].max(two.along[0]))..view.column(one.along[1].min(two.along[1])).max(1);
     let border = if one.middle() < two.middle() { [one.across[1], two.across[0]] } else { [two.across[1], one.across[0]] };
     let (low, high) = (border[0].min(border[1]) - 1e-6, border[0].max(border[1]) + 1e-6);
     let lines: Vec<&Vec<bool>> =
-        offsets.iter().zip(pieces).filter(|(o, _)| **o >= low && **o <= high).map(|(_, piece)| piece).collect();
+        offsets.iter().zip(sides).filter(|(o, _)| **o >= low && **o <= high).map(|(_, side)| &side.faces).collect();
     let count = columns.len();
     count > 0 && columns.filter(|&c| lines.iter().any(|line| line[c])).count() as f64 >= DENSE * count as f64
 }
 
-/// Where a line is a side: structure, with the gaps of empty bays closed.
-fn side(covered: &[bool], cell: f64) -> Vec<bool> {
-    let mut closed = covered.to_vec();
-    close(&mut closed, (BAY / cell) as usize);
-    let shortest = (SHORTEST_SIDE / cell) as usize;
-    for (from, to) in runs(&closed.clone(), true) {
-        if to - from < shortest {
-            closed[from..to].fill(false);
-        }
-    }
-    closed
+/// A line as the side of a strip, column by column.
+struct Side {
+    /// Structure, or the gap of an empty bay.
+    walls: Vec<bool>,
+    /// Structure, or a gap too short for a bay.
+    near: Vec<bool>,
+    /// Structure of some length: more than posts.
+    faces: Vec<bool>,
 }
 
-/// Where structure of some length lies on a line.
-fn piece(covered: &[bool], cell: f64) -> Vec<bool> {
-    let mut closed = covered.to_vec();
-    close(&mut closed, (PIECE_GAP / cell) as usize);
-    for (from, to) in runs(&closed.clone(), true) {
-        if to - from < (PIECE / cell) as usize {
-            closed[from..to].fill(false);
-        }
+impl Side {
+    fn new(covered: &[bool], cell: f64) -> Self {
+        let cells = |metres: f64| (metres / cell) as usize;
+        let joined = |gap: f64, shortest: f64| {
+            let mut flags = covered.to_vec();
+            close(&mut flags, cells(gap));
+            for (from, to) in runs(&flags, true) {
+                if to - from < cells(shortest) {
+                    flags[from..to].fill(false);
+                }
+            }
+            flags
+        };
+        Self { walls: joined(BAY, SHORTEST_SIDE), near: joined(BAY / 2.0, 0.0), faces: joined(FACE_GAP, FACE) }
     }
-    closed
 }
 
 /// What one column of a strip holds.
@@ -160,6 +161,8 @@ struct Column {
     blocked: f64,
     /// Structure lies on both sides, or a bay's gap in it.
     walled: bool,
+    /// And not both sides are in the gap of a bay, or in the mouths of a way that crosses.
+    near: bool,
     /// Structure of some length lies on one side at least.
     faced: bool,
 }
@@ -178,7 +181,7 @@ impl Column {
     }
 }
 
-fn columns(view: &Turned, sides: [&[bool]; 2], faces: [&[bool]; 2], inner: &[&[bool]], across: [f64; 2]) -> Vec<Column> {
+fn columns(view: &Turned, sides: [&Side; 2], inner: &[&[bool]], across: [f64; 2]) -> Vec<Column> {
     let margin = MARGIN.min(0.2 * (across[1] - across[0]));
     (0..view.size[0])
         .map(|c| Column {
@@ -186,8 +189,9 @@ fn columns(view: &Turned, sides: [&[bool]; 2], faces: [&[bool]; 2], inner: &[&[b
                 let least = if inner.iter().any(|line| line[c]) { IMPASSABLE } else { 0.0 };
                 view.blocked(c, across[0] + margin, across[1] - margin).max(least)
             },
-            walled: sides.iter().all(|side| side[c]),
-            faced: faces.iter().any(|face| face[c]),
+            walled: sides.iter().all(|side| side.walls[c]),
+            near: sides.iter().any(|side| side.near[c]),
+            faced: sides.iter().any(|side| side.faces[c]),
         })
         .collect()
 }
@@ -199,12 +203,13 @@ fn strips(view: &Turned, columns: &[Column], range: std::ops::Range<usize>, acro
     let mut found = Vec::new();
     for (from, to) in best_pieces(&scores) {
         let piece = &columns[range.start + from..range.start + to];
-        let faced = piece.iter().filter(|c| c.walled && c.faced).count() as f64 * view.cell;
+        let near = piece.iter().filter(|c| c.walled && c.near).count() as f64;
+        let faced = piece.iter().filter(|c| c.walled && c.faced).count() as f64;
         let walled = piece.iter().filter(|c| c.walled && c.blocked < 0.5).count() as f64 * view.cell;
         let along = [view.along(range.start + from), view.along(range.start + to)];
         let score = scores[from..to].iter().sum::<f64>() * view.cell;
         let strip = Strip { direction: view.direction, along, across, walled, score };
-        if strip.length() >= aspect * strip.width() && walled >= LEAST_WALLED * strip.length() && faced >= LEAST_FACED * walled {
+        if strip.length() >= aspect * strip.width() && walled >= LEAST_WALLED * strip.length() && faced >= LEAST_FACED * near {
             found.push(strip);
         }
     }
