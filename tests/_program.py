@@ -15,7 +15,14 @@ import pytest
 
 from groundplan.cli import main
 
-YAML = "image: {image}\nresolution: 0.05\norigin: [-1.0, 2.0, {yaw}]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+YAML = """\
+image: {image}
+resolution: 0.05
+origin: [-1.0, 2.0, {yaw}]
+negate: 0
+occupied_thresh: 0.65
+free_thresh: 0.196
+"""
 
 
 @dataclass(frozen=True)

@@ -46,9 +46,9 @@ def truncated_png(path: Path) -> None:
     path.write_bytes(path.read_bytes()[:3000])
 
 
-def text(path: Path, content: str) -> None:
+def text(path: Path, content: str) -> int:
     """A text file."""
-    path.write_text(content)
+    return path.write_text(content)
 
 
 UNREADABLE: dict[str, tuple[str, Callable[[Path], object], list[str]]] = {
@@ -80,9 +80,7 @@ UNREADABLE: dict[str, tuple[str, Callable[[Path], object], list[str]]] = {
     ),
     "resolution": (
         "zero.yaml",
-        lambda path: (
-            text(path, "image: i.pgm\nresolution: 0.0\norigin: [0, 0, 0]\n") or write_pgm(Path("i.pgm"), hall())
-        ),
+        lambda path: write_map(path.parent).rename(path).write_text("image: hall.pgm\nresolution: 0.0\n"),
         ["zero.yaml", "resolution 0.0"],
     ),
 }

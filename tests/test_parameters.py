@@ -52,10 +52,9 @@ def test_keywords_flags_and_file_agree(tmp_path: Path, capsys: Capture) -> None:
         "".join(f"{name} = {json.dumps(value)}\n" for name, value in SETTINGS.items())
     )
     assert in_force(capsys, "--config", "dotted.toml") == expected
-    assert in_force(
-        capsys, *"--direction 0 90 --detail coarse --set lines_snr=4.5 --set labels.method=paper".split(),
-        "--set", "directions.separation_deg=5",
-    ) == expected  # fmt: skip
+    own_flags = ["--direction", "0", "90", "--detail", "coarse"]
+    settings = ["lines_snr=4.5", "labels.method=paper", "directions.separation_deg=5"]
+    assert in_force(capsys, *own_flags, *(word for one in settings for word in ("--set", one))) == expected
 
 
 def test_a_flag_beats_the_file_and_the_file_the_default(tmp_path: Path, capsys: Capture) -> None:

@@ -8,9 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
+
+import groundplan
 
 OCCUPIED, UNKNOWN, FREE = 0, 205, 254
 #: Metres per pixel.
@@ -293,3 +296,39 @@ def turns(picture: Picture) -> list[Variant]:
     padded = np.pad(picture, ((11, below), (left, 5)), constant_values=UNKNOWN)
     made.append(Variant("padded", padded, np.eye(2), RESOLUTION * np.array([left, below])))
     return made
+
+
+#: How many variants `turns` makes, and which of them is padded.
+TURNS, PADDED = range(6), 5
+#: Maps that a margin of unknown makes another map of: their free space, or what is taken, no longer runs off the map.
+OPEN = frozenset(
+    {"empty", "all_occupied", "skewed", "triangle_grid", "freestanding_wall", "noise", "diagonal_only"}
+    | {"lines_at_the_corner", "one_pixel", "one_row"}
+)
+
+
+@cache
+def variants(name: str) -> list[Variant]:
+    """The variants of a map of the zoo."""
+    return turns(ZOO[name]())
+
+
+@cache
+def surveyed(name: str, turn: int = 0) -> groundplan.Survey:
+    """The survey of a variant of a map of the zoo."""
+    return groundplan.survey(variants(name)[turn].picture, resolution=RESOLUTION, threads=1)
+
+
+def apart(angles: npt.ArrayLike, others: npt.ArrayLike) -> Points:
+    """Angles between undirected directions, radians, each of one list against each of the other."""
+    gap = np.asarray(angles, dtype=np.float64)[:, None] - np.asarray(others, dtype=np.float64)[None, :]
+    return np.abs((gap + np.pi / 2) % np.pi - np.pi / 2)
+
+
+def farthest(points: npt.ArrayLike, others: npt.ArrayLike) -> float:
+    """The greatest distance from any point to the nearest of the other set, either way round, metres."""
+    p, q = (np.asarray(side, dtype=np.float64).reshape(-1, 2) for side in (points, others))
+    if len(p) == 0 or len(q) == 0:
+        return 0.0 if len(p) == len(q) else np.inf
+    gaps = np.linalg.norm(p[:, None] - q[None, :], axis=2)
+    return float(max(gaps.min(axis=0).max(), gaps.min(axis=1).max()))

@@ -28,7 +28,7 @@ LABELS = {"junction_f1": "F1", "junction_typed_f1": "typed", "corridor_recall": 
 
 def fill(own: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    own.usage = "groundplan evaluate (SURVEY TRUTH | --suite NAME [--methods LIST]) [--json]"
+    own.usage = "groundplan evaluate (SURVEY TRUTH | --suite NAME) [--json] [flags]"
     own.add_argument("survey", metavar="SURVEY", nargs="?", help="a survey.json")
     own.add_argument("truth", metavar="TRUTH", nargs="?", help="a truth.json, as groundplan simulate writes it")
     own.add_argument("--json", action="store_true", help="print the scores as JSON")

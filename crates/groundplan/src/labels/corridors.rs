@@ -54,6 +54,12 @@ const MARGIN: f64 = 0.2;
 /// What speaks against a corridor, in columns that speak for it: an opening at a side, and a strip that is blocked.
 const OPEN: f64 = 0.15;
 const BLOCKED: f64 = 6.0;
+/// Structure along the strip between its sides: another wall, or the face of a pallet.
+const PARTED: f64 = 1.0;
+/// Where the strip just beyond a side, from so far to so far, metres, is not free by this share, the side holds without
+/// structure on it: a wall too faint to be occupied, or goods behind the posts.
+const BESIDE: (f64, f64) = (0.1, 0.5);
+const BEYOND: f64 = 0.8;
 /// Up to this share, what stands in the strip is clutter that one passes by.
 const NARROWED: f64 = 0.5;
 /// Nothing gets through where more than this share is blocked, and that speaks so much against a corridor.
@@ -65,6 +71,9 @@ const DENSE: f64 = 0.6;
 const LEAST_WALLED: f64 = 0.2;
 /// Least share of that which has more than posts on one side.
 const LEAST_FACED: f64 = 0.7;
+/// A corridor that is no longer than so many times its width has structure on both sides over this share.
+const LONG: f64 = 4.5;
+const LEAST_FACED_TWICE: f64 = 0.4;
 /// Strips that overlap across by more than this share of the narrower one are rivals.
 const RIVAL: f64 = 0.25;
 
@@ -159,12 +168,14 @@ impl Side {
 struct Column {
     /// Share of it that is not free.
     blocked: f64,
+    /// Structure lies along it between its sides.
+    parted: bool,
     /// Structure lies on both sides, or a bay's gap in it.
     walled: bool,
     /// And not both sides are in the gap of a bay, or in the mouths of a way that crosses.
     near: bool,
-    /// Structure of some length lies on one side at least.
-    faced: bool,
+    /// On how many sides structure of some length lies.
+    faces: u8,
 }
 
 impl Column {
@@ -177,21 +188,20 @@ impl Column {
         } else {
             2.0 * self.blocked
         };
-        (if self.walled { 1.0 } else { -OPEN }) - against
+        (if self.parted { -PARTED } else if self.walled { 1.0 } else { -OPEN }) - against
     }
 }
 
 fn columns(view: &Turned, sides: [&Side; 2], inner: &[&[bool]], across: [f64; 2]) -> Vec<Column> {
     let margin = MARGIN.min(0.2 * (across[1] - across[0]));
+    let beyond = [[across[0] - BESIDE.1, across[0] - BESIDE.0], [across[1] + BESIDE.0, across[1] + BESIDE.1]];
     (0..view.size[0])
         .map(|c| Column {
-            blocked: {
-                let least = if inner.iter().any(|line| line[c]) { IMPASSABLE } else { 0.0 };
-                view.blocked(c, across[0] + margin, across[1] - margin).max(least)
-            },
-            walled: sides.iter().all(|side| side.walls[c]),
+            blocked: view.blocked(c, across[0] + margin, across[1] - margin),
+            parted: inner.iter().any(|line| line[c]),
+            walled: (0..2).all(|n| sides[n].walls[c] || view.blocked(c, beyond[n][0], beyond[n][1]) > BEYOND),
             near: sides.iter().any(|side| side.near[c]),
-            faced: sides.iter().any(|side| side.faces[c]),
+            faces: sides.iter().map(|side| u8::from(side.faces[c])).sum(),
         })
         .collect()
 }
@@ -204,12 +214,13 @@ fn strips(view: &Turned, columns: &[Column], range: std::ops::Range<usize>, acro
     for (from, to) in best_pieces(&scores) {
         let piece = &columns[range.start + from..range.start + to];
         let near = piece.iter().filter(|c| c.walled && c.near).count() as f64;
-        let faced = piece.iter().filter(|c| c.walled && c.faced).count() as f64;
+        let faced = |least: u8| piece.iter().filter(|c| c.walled && c.faces >= least).count() as f64;
+        let posts_only = faced(1) < LEAST_FACED * near;
         let walled = piece.iter().filter(|c| c.walled && c.blocked < 0.5).count() as f64 * view.cell;
         let along = [view.along(range.start + from), view.along(range.start + to)];
         let score = scores[from..to].iter().sum::<f64>() * view.cell;
         let strip = Strip { direction: view.direction, along, across, walled, score };
-        if strip.length() >= aspect * strip.width() && walled >= LEAST_WALLED * strip.length() && faced >= LEAST_FACED * near {
+        if strip.length() >= aspect * strip.width() && walled >= LEAST_WALLED * strip.length() && !posts_only && !(strip.length() < LONG * strip.width() && faced(2) < LEAST_FACED_TWICE * near && faced(1) < 0.85 * near) {
             found.push(strip);
         }
     }
