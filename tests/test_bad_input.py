@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import struct
 import sys
@@ -218,3 +219,17 @@ def test_other_files_that_are_not_what_they_should_be(
     sentence = one_error(ran)
     assert all(value in sentence for value in values), sentence
     assert files(tmp_path) == before
+
+
+@pytest.mark.parametrize(
+    "label",
+    [{}, 3, {"kind": "corridor"}, {"kind": "junction", "type": "T", "at": [1]}, {"kind": 7}, {"kind": "x", "at": "y"}],
+)
+def test_a_survey_with_a_damaged_label_is_refused(label: object, tmp_path: Path, capsys: Capture) -> None:
+    write_map(tmp_path)
+    call(capsys, "survey", "hall.yaml", "-o", "out")
+    tree = json.loads((tmp_path / "out/survey.json").read_text()) | {"labels": [label]}
+    (tmp_path / "out/survey.json").write_text(json.dumps(tree))
+    ran = call(capsys, "figures", "out/survey.json")
+    assert ran.code == 3 and "the survey is not whole" in one_error(ran)
+    assert not (tmp_path / "out/figures").exists()

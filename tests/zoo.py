@@ -277,7 +277,8 @@ class Variant:
         """Undirected angles of the original in the variant, in [-pi/2, pi/2)."""
         angles = np.atleast_1d(np.asarray(original, dtype=np.float64))
         x, y = self.matrix @ np.stack([np.cos(angles), np.sin(angles)])
-        return (np.arctan2(y, x) + np.pi / 2) % np.pi - np.pi / 2
+        turned: Points = (np.arctan2(y, x) + np.pi / 2) % np.pi - np.pi / 2
+        return turned
 
 
 def turns(picture: Picture) -> list[Variant]:
@@ -322,7 +323,8 @@ def surveyed(name: str, turn: int = 0) -> groundplan.Survey:
 def apart(angles: npt.ArrayLike, others: npt.ArrayLike) -> Points:
     """Angles between undirected directions, radians, each of one list against each of the other."""
     gap = np.asarray(angles, dtype=np.float64)[:, None] - np.asarray(others, dtype=np.float64)[None, :]
-    return np.abs((gap + np.pi / 2) % np.pi - np.pi / 2)
+    between: Points = np.abs((gap + np.pi / 2) % np.pi - np.pi / 2)
+    return between
 
 
 def farthest(points: npt.ArrayLike, others: npt.ArrayLike) -> float:

@@ -38,6 +38,9 @@ if TYPE_CHECKING:
 FORMAT, VERSION = "groundplan-survey", 1
 STATES = ("free", "occupied", "unknown")
 
+#: What a label of a kind must have besides its kind.
+NEEDED = {"corridor": ("polygon", "axis", "width"), "junction": ("type", "at")}
+
 #: A label: ``kind`` and the keys that the survey's format gives that kind. Plain values, as in the JSON.
 Label = dict[str, Any]
 
@@ -205,7 +208,8 @@ class Survey(Stage):
     def _from_tree(cls, tree: dict[str, Any]) -> Survey:
         frame, evidence, faces, edges = tree["map"], tree["evidence"], tree["faces"], tree["edges"]
         x, y, yaw = (float(value) for value in frame["origin"])
-        info = MapInfo(frame["image"], frame["width"], frame["height"], float(frame["resolution"]), (x, y, yaw))
+        width, height = int(frame["width"]), int(frame["height"])
+        info = MapInfo(str(frame["image"]), width, height, float(frame["resolution"]), (x, y, yaw))
         offsets = np.cumsum([0, *(len(face["vertices"]) for face in faces)], dtype=np.uint32)
         return cls(
             map=info,
@@ -261,7 +265,7 @@ class Survey(Stage):
                 edges=column(tree["links"], "edge", np.uint32),
                 connected=column(tree["links"], "connected", np.bool_),
             ),
-            labels=tree["labels"],
+            labels=[checked(label) for label in tree["labels"]],
             warnings=[MapWarning(w["code"], w["message"]) for w in tree["warnings"]],
             source=str(tree["source"]["file"]) if "source" in tree else None,
         )
@@ -368,6 +372,28 @@ def rows(**columns: Any) -> list[dict[str, Any]]:
 def column(records: list[dict[str, Any]], name: str, kind: npt.DTypeLike) -> npt.NDArray[Any]:
     """One key of a list of records as an array."""
     return np.array([entry[name] for entry in records], dtype=kind)
+
+
+def checked(label: Any) -> Label:
+    """A label from a file, held to what its readers count on.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        A part is missing, of another type or of another shape.
+    """
+    for key in ("kind", *NEEDED.get(label["kind"], ())):
+        label[key]
+    for key, value in label.items():
+        if key in ("kind", "type", "use", "name") and not isinstance(value, str):
+            raise TypeError(f"the {key} of a label is {value!r}")
+        if key in ("at", "polygon", "axis"):
+            points = np.asarray(value)
+            if points.dtype.kind not in "if" or points.shape[-1:] != (2,) or points.ndim != 1 + (key != "at"):
+                raise ValueError(f"the {key} of a {label['kind']} is not made of points")
+        if key in ("width", "area"):
+            float(value)
+    return dict(label)
 
 
 def dump(value: Any) -> str:

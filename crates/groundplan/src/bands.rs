@@ -9,7 +9,7 @@ const BAND_ROWS: usize = 64;
 /// What `pass` makes of each band of `0..rows`, in the bands' order. Threads are started only when asked for.
 pub fn map_bands<T: Send>(rows: usize, threads: usize, pass: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
     let gather = |made: &mut Vec<(usize, T)>, band: Range<usize>| made.push((band.start, pass(band)));
-    let mut made = fold_bands(rows, threads, Vec::new, gather, |all, part| all.extend(part));
+    let mut made = fold_bands(rows, threads, Vec::new, gather, Vec::extend);
     made.sort_unstable_by_key(|(start, _)| *start);
     made.into_iter().map(|(_, t)| t).collect()
 }
@@ -42,7 +42,10 @@ pub fn fold_bands<T: Send>(
     }
     let totals: Vec<T> = std::thread::scope(|scope| {
         let handles: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        handles.into_iter().map(|h| h.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+        handles
+            .into_iter()
+            .map(|h| h.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            .collect()
     });
     let mut totals = totals.into_iter();
     let mut sum = totals.next().unwrap_or_else(empty);

@@ -61,7 +61,13 @@ pub fn find_occupancy(
     let evidence: Vec<Sums> = sums
         .iter()
         .zip(&arrangement.face_starts)
-        .map(|(sums, &first)| if sums.pixels > 0 { *sums } else { pixel_under(grid, arrangement, first) })
+        .map(|(sums, &first)| {
+            if sums.pixels > 0 {
+                *sums
+            } else {
+                pixel_under(grid, arrangement, first)
+            }
+        })
         .collect();
     let share = |part: i64, of: i64| tidy(part as f64 / of as f64);
     let faces: Vec<f64> = evidence.iter().map(|s| share(s.percent, 100 * s.pixels)).collect();
@@ -122,37 +128,43 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, threads: usize) -> Vec<Sums
         pixels,
     };
     let empty = || vec![Sums::default(); arrangement.face_starts.len()];
-    fold_bands(height, threads, empty, |totals, band| {
-        let mut left = vec![0u128; width + 1];
-        let crossings = Crossings::new(arrangement, band.clone());
-        for y in band {
-            let mut sum = 0u128;
-            for (entry, &value) in left[1..].iter_mut().zip(grid.row(y)) {
-                sum += packed[usize::from(value)];
-                *entry = sum;
-            }
-            crossings.of_row(arrangement, y, width, |half, column| {
-                let sums = unpack(left[column], column as i64);
-                for (half, sign) in [(half, 1), (Arrangement::twin(half), -1)] {
-                    let face = arrangement.faces[half as usize];
-                    if face != NONE {
-                        let total = &mut totals[face as usize];
-                        total.percent += sign * sums.percent;
-                        total.unknown += sign * sums.unknown;
-                        total.free += sign * sums.free;
-                        total.pixels += sign * sums.pixels;
-                    }
+    fold_bands(
+        height,
+        threads,
+        empty,
+        |totals, band| {
+            let mut left = vec![0u128; width + 1];
+            let crossings = Crossings::new(arrangement, band.clone());
+            for y in band {
+                let mut sum = 0u128;
+                for (entry, &value) in left[1..].iter_mut().zip(grid.row(y)) {
+                    sum += packed[usize::from(value)];
+                    *entry = sum;
                 }
-            });
-        }
-    }, |totals, part| {
-        for (total, sums) in totals.iter_mut().zip(part) {
-            total.percent += sums.percent;
-            total.unknown += sums.unknown;
-            total.free += sums.free;
-            total.pixels += sums.pixels;
-        }
-    })
+                crossings.of_row(arrangement, y, width, |half, column| {
+                    let sums = unpack(left[column], column as i64);
+                    for (half, sign) in [(half, 1), (Arrangement::twin(half), -1)] {
+                        let face = arrangement.faces[half as usize];
+                        if face != NONE {
+                            let total = &mut totals[face as usize];
+                            total.percent += sign * sums.percent;
+                            total.unknown += sign * sums.unknown;
+                            total.free += sign * sums.free;
+                            total.pixels += sign * sums.pixels;
+                        }
+                    }
+                });
+            }
+        },
+        |totals, part| {
+            for (total, sums) in totals.iter_mut().zip(part) {
+                total.percent += sums.percent;
+                total.unknown += sums.unknown;
+                total.free += sums.free;
+                total.pixels += sums.pixels;
+            }
+        },
+    )
 }
 
 /// Edges that cross the rows of a band, by row.
@@ -186,7 +198,11 @@ impl Crossings {
             let mut high = edges.end;
             while low < high {
                 let middle = low + (high - low) / 2;
-                if before(&middle) { low = middle + 1 } else { high = middle }
+                if before(&middle) {
+                    low = middle + 1;
+                } else {
+                    high = middle;
+                }
             }
             for edge in low..edges.end {
                 let start = arrangement.rows_below[arrangement.edges[edge as usize][0] as usize] as usize;
@@ -196,9 +212,16 @@ impl Crossings {
                 add(edge);
             }
         }
-        let border = arrangement.edge_lines.iter().rposition(|&line| line != NONE).map_or(0, |n| n + 1);
+        let border = arrangement
+            .edge_lines
+            .iter()
+            .rposition(|&line| line != NONE)
+            .map_or(0, |n| n + 1);
         (border as u32..arrangement.edges.len() as u32).for_each(add);
-        Self { first_row: band.start, rows }
+        Self {
+            first_row: band.start,
+            rows,
+        }
     }
 
     /// Calls `visit` with each half-edge that runs upwards across row `y` and the number of pixels left of it.
@@ -247,7 +270,12 @@ fn edge_occupancy(
         let diagonal = (frame.width + frame.height) as f64;
         let span = 2 * diagonal.ceil() as usize + 4;
         let mut covered: Vec<Vec<u64>> = vec![Vec::new(); members.len()];
-        for ((pixel, &along), &magnitude) in gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes) {
+        for ((pixel, &along), &magnitude) in gradients
+            .pixels
+            .iter()
+            .zip(&gradients.angles)
+            .zip(&gradients.magnitudes)
+        {
             if weight(f64::from(along), magnitude, angle, tolerance, true) == 0 {
                 continue;
             }
@@ -311,6 +339,10 @@ fn counts(bits: &[u64]) -> Vec<u32> {
 /// Set bits before bit `n`.
 fn count_below(bits: &[u64], sums: &[u32], n: usize) -> u32 {
     let word = (n / 64).min(bits.len() - 1);
-    let rest = if n / 64 >= bits.len() { u64::MAX } else { (1u64 << (n % 64)) - 1 };
+    let rest = if n / 64 >= bits.len() {
+        u64::MAX
+    } else {
+        (1u64 << (n % 64)) - 1
+    };
     sums[word] + (bits[word] & rest).count_ones()
 }

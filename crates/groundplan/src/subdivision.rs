@@ -32,8 +32,16 @@ impl Subdivision {
     /// From an arrangement, with coordinates in the map frame.
     #[must_use]
     pub fn new(frame: &Frame, arrangement: &Arrangement) -> Self {
-        let vertices: Vec<[f64; 2]> = arrangement.vertices.iter().map(|&v| frame.to_metres(v).map(tidy)).collect();
-        let edge_faces = arrangement.faces.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        let vertices: Vec<[f64; 2]> = arrangement
+            .vertices
+            .iter()
+            .map(|&v| frame.to_metres(v).map(tidy))
+            .collect();
+        let edge_faces = arrangement
+            .faces
+            .chunks_exact(2)
+            .map(|pair| [pair[0], pair[1]])
+            .collect();
         let faces = arrangement.face_starts.len();
         let mut made = Self {
             vertices,
@@ -95,7 +103,11 @@ impl Subdivision {
     }
 
     fn ids_out_of_range(&self) -> bool {
-        let (v, e, f) = (self.vertices.len() as u32, self.edge_vertices.len() as u32, self.faces() as u32);
+        let (v, e, f) = (
+            self.vertices.len() as u32,
+            self.edge_vertices.len() as u32,
+            self.faces() as u32,
+        );
         let lists = self.edge_lines.len() != self.edge_vertices.len()
             || self.edge_faces.len() != self.edge_vertices.len()
             || self.face_vertices.len() != self.face_edges.len()
@@ -105,14 +117,18 @@ impl Subdivision {
             || self.face_offsets.windows(2).any(|w| w[0] > w[1])
             || self.centres.len() != self.faces();
         lists
-            || self.edge_vertices.iter().flatten().chain(&self.face_vertices).any(|&n| n >= v)
+            || self
+                .edge_vertices
+                .iter()
+                .flatten()
+                .chain(&self.face_vertices)
+                .any(|&n| n >= v)
             || self.face_edges.iter().any(|&n| n >= e)
             || self.edge_faces.iter().flatten().any(|&n| n >= f && n != NONE)
     }
 
     /// V - E + F = 1 + C, with the outside as a face.
     fn check_euler(&self, found: &mut Vec<String>) {
-        let mut parent: Vec<u32> = (0..self.vertices.len() as u32).collect();
         fn root(parent: &mut [u32], mut n: u32) -> u32 {
             while parent[n as usize] != n {
                 parent[n as usize] = parent[parent[n as usize] as usize];
@@ -120,6 +136,7 @@ impl Subdivision {
             }
             n
         }
+        let mut parent: Vec<u32> = (0..self.vertices.len() as u32).collect();
         for [p, q] in &self.edge_vertices {
             let (p, q) = (root(&mut parent, *p), root(&mut parent, *q));
             parent[p.max(q) as usize] = p.min(q);
@@ -127,7 +144,11 @@ impl Subdivision {
         let pieces = (0..parent.len()).filter(|&n| parent[n] == n as u32).count();
         let (v, e, f) = (self.vertices.len(), self.edge_vertices.len(), self.faces() + 1);
         if v + f != 1 + pieces + e {
-            found.push(format!("V - E + F = {} and not 1 + C = {}", v as i64 - e as i64 + f as i64, 1 + pieces));
+            found.push(format!(
+                "V - E + F = {} and not 1 + C = {}",
+                v as i64 - e as i64 + f as i64,
+                1 + pieces
+            ));
         }
     }
 
@@ -152,7 +173,7 @@ impl Subdivision {
                 let ends = self.edge_vertices[e as usize];
                 let (p, q) = (vertices[n], vertices[(n + 1) % vertices.len()]);
                 let sides = self.edge_faces[e as usize];
-                let side = if ends == [p, q] { 0 } else { 1 };
+                let side = usize::from(ends != [p, q]);
                 if ends != [p, q] && ends != [q, p] {
                     found.push(format!("edge {e} of face {f} does not join its vertices"));
                 } else if sides[side] != f as u32 {
@@ -178,8 +199,10 @@ impl Subdivision {
                 found.push(format!("edge {e} has {inner} faces and bounds {}", uses[e]));
             }
             if (self.edge_lines[e] == NONE) != (inner == 1) {
-                found.push(format!("edge {e} has {inner} faces but is {} the border",
-                    if self.edge_lines[e] == NONE { "on" } else { "not on" }));
+                found.push(format!(
+                    "edge {e} has {inner} faces but is {} the border",
+                    if self.edge_lines[e] == NONE { "on" } else { "not on" }
+                ));
             }
         }
     }

@@ -63,7 +63,9 @@ pub struct Given {
 pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> Survey {
     let frame = &grid.frame;
     let gradients = find_gradients(grid, parameters, threads);
-    let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters));
+    let directions = given
+        .directions
+        .unwrap_or_else(|| find_directions(frame, &gradients, parameters));
     let radiograms = find_radiograms(frame, &gradients, &directions, parameters);
     let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
     let arrangement = arrange(frame, &directions.angles, &lines);
@@ -86,7 +88,10 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
     });
     let warnings = find_warnings(&gradients, &directions, &lines, &labels, parameters);
     debug_assert_eq!(subdivision.problems(), Vec::<String>::new());
-    debug_assert_eq!(occupancy.pixels.iter().sum::<u64>(), (frame.width * frame.height) as u64);
+    debug_assert_eq!(
+        occupancy.pixels.iter().sum::<u64>(),
+        (frame.width * frame.height) as u64
+    );
     Survey {
         gradients,
         directions,
@@ -120,13 +125,22 @@ fn find_warnings(
     let mut warn = |code, message| warnings.push(Warning { code, message });
     let edges = gradients.pixels.len();
     if edges < FEW_EDGE_PIXELS {
-        warn("few-edges", format!("the map has only {edges} edge pixels: nothing much can be said of it"));
+        warn(
+            "few-edges",
+            format!("the map has only {edges} edge pixels: nothing much can be said of it"),
+        );
     }
     if directions.angles.is_empty() {
-        warn("no-structure", "no direction stands out: the map has no straight structure".to_owned());
+        warn(
+            "no-structure",
+            "no direction stands out: the map has no straight structure".to_owned(),
+        );
     } else if directions.explained < LITTLE_EXPLAINED {
         let percent = (100.0 * directions.explained).round();
-        warn("little-structure", format!("only {percent} percent of the structure lines up along the directions found"));
+        warn(
+            "little-structure",
+            format!("only {percent} percent of the structure lines up along the directions found"),
+        );
     }
     let pair: f64 = directions.weights.iter().take(2).sum();
     let all: f64 = directions.weights.iter().sum();
@@ -134,13 +148,21 @@ fn find_warnings(
         let (count, percent) = (directions.weights.len(), (100.0 * pair / all).round());
         warn(
             "scattered-structure",
-            format!("the structure is scattered over {count} directions, and the strongest two hold only {percent} percent"),
+            format!(
+                "the structure is scattered over {count} directions, and the strongest two hold only {percent} percent"
+            ),
         );
     }
     if let Some(count) = parameters.directions_count
         && directions.angles.len() < count
     {
-        warn("few-directions", format!("{count} directions were asked for and {} found", directions.angles.len()));
+        warn(
+            "few-directions",
+            format!(
+                "{count} directions were asked for and {} found",
+                directions.angles.len()
+            ),
+        );
     }
     if !directions.angles.is_empty() && lines.is_empty() {
         warn("no-lines", "no line stands out of the radiograms".to_owned());

@@ -46,17 +46,27 @@ pub fn find_walls(subdivision: &Subdivision, occupancy: &Occupancy, parameters: 
     let disparity: Vec<f64> = subdivision
         .edge_faces
         .iter()
-        .map(|&[l, r]| if l == NONE || r == NONE { 0.0 } else { tidy((occupancy.faces[l as usize] - occupancy.faces[r as usize]).abs()) })
+        .map(|&[l, r]| {
+            if l == NONE || r == NONE {
+                0.0
+            } else {
+                tidy((occupancy.faces[l as usize] - occupancy.faces[r as usize]).abs())
+            }
+        })
         .collect();
     let inner = |e: usize| !subdivision.edge_faces[e].contains(&NONE);
     let cogent: Vec<bool> = (0..disparity.len())
-        .map(|e| inner(e) && (disparity[e] > parameters.walls_disparity || occupancy.edges[e] > parameters.walls_occupancy))
+        .map(|e| {
+            inner(e) && (disparity[e] > parameters.walls_disparity || occupancy.edges[e] > parameters.walls_occupancy)
+        })
         .collect();
     let kind = |e: usize| {
         if !cogent[e] {
             return None;
         }
-        let unknown = subdivision.edge_faces[e].iter().any(|&f| occupancy.states[f as usize] == State::Unknown);
+        let unknown = subdivision.edge_faces[e]
+            .iter()
+            .any(|&f| occupancy.states[f as usize] == State::Unknown);
         if unknown && occupancy.edges[e] < LEAST_OCCUPANCY_AT_FRONTIER {
             None
         } else if disparity[e] > parameters.walls_disparity {
@@ -73,10 +83,18 @@ pub fn find_walls(subdivision: &Subdivision, occupancy: &Occupancy, parameters: 
         let ends = subdivision.edge_vertices[edge].map(|v| subdivision.vertices[v as usize]);
         match (found, walls.last_mut()) {
             (Some(_), Some(wall)) if found == open => wall.points[1] = ends[1],
-            (Some((line, kind)), _) => walls.push(Wall { points: ends, line, kind }),
+            (Some((line, kind)), _) => walls.push(Wall {
+                points: ends,
+                line,
+                kind,
+            }),
             (None, _) => {}
         }
         open = found;
     }
-    Walls { cogent, disparity, walls }
+    Walls {
+        cogent,
+        disparity,
+        walls,
+    }
 }

@@ -69,11 +69,15 @@ const CLOSED: f64 = 40.0;
 const DENSE: f64 = 0.6;
 /// Least share of a corridor's length that is walled on both sides.
 const LEAST_WALLED: f64 = 0.2;
-/// Least share of that which has more than posts on one side.
-const LEAST_FACED: f64 = 0.7;
-/// A corridor that is no longer than so many times its width has structure on both sides over this share.
+/// A corridor so many times as long as wide is a long one.
 const LONG: f64 = 4.5;
-const LEAST_FACED_TWICE: f64 = 0.4;
+/// Least share of a long corridor's walls that is more than posts, on one side at least.
+const FACED_LONG: f64 = 0.55;
+/// The same for a short one, which may be a row of empty bays: so much on one side, and on the other so much too, or
+/// nearly all on the one.
+const FACED: f64 = 0.7;
+const FACED_TWICE: f64 = 0.4;
+const FACED_ONCE: f64 = 0.85;
 /// Strips that overlap across by more than this share of the narrower one are rivals.
 const RIVAL: f64 = 0.25;
 
@@ -84,7 +88,11 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
 
 fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
     let parameters = evidence.parameters;
-    let sides: Vec<Side> = view.covered.iter().map(|covered| Side::new(covered, view.cell)).collect();
+    let sides: Vec<Side> = view
+        .covered
+        .iter()
+        .map(|covered| Side::new(covered, view.cell))
+        .collect();
     let offsets: Vec<f64> = view.lines.iter().map(|&n| evidence.lines.offsets[n]).collect();
     let mut candidates = Vec::new();
     for low in 0..offsets.len() {
@@ -96,7 +104,8 @@ fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
             if width >= parameters.labels_min_width {
                 let across = [offsets[low], offsets[high]];
                 let margin = INNER.min(0.25 * width);
-                let within = (low + 1..high).filter(|&n| offsets[n] - across[0] > margin && across[1] - offsets[n] > margin);
+                let within =
+                    (low + 1..high).filter(|&n| offsets[n] - across[0] > margin && across[1] - offsets[n] > margin);
                 let inner: Vec<&[bool]> = within.map(|n| sides[n].faces.as_slice()).collect();
                 let columns = columns(view, [&sides[low], &sides[high]], &inner, across);
                 let found = strips(view, &columns, 0..view.size[0], across, parameters.labels_min_aspect);
@@ -108,30 +117,58 @@ fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
     let mut kept: Vec<Strip> = Vec::new();
     for (strip, columns) in candidates {
         // What stronger rivals leave of it.
-        let mut left = vec![(view.column(strip.along[0]), view.column(strip.along[1] - view.cell / 2.0) + 1)];
+        let mut left = vec![(
+            view.column(strip.along[0]),
+            view.column(strip.along[1] - view.cell / 2.0) + 1,
+        )];
         for rival in &kept {
             let shared = strip.across[1].min(rival.across[1]) - strip.across[0].max(rival.across[0]);
             let beside = shared.abs() < INNER && !dense(view, &sides, &offsets, &strip, rival);
             if shared > RIVAL * strip.width().min(rival.width()) || beside {
-                let cut = (view.column(rival.along[0]), view.column(rival.along[1] - view.cell / 2.0) + 1);
-                left = left.into_iter().flat_map(|(a, b)| [(a, b.min(cut.0)), (a.max(cut.1), b)]).filter(|(a, b)| a < b).collect();
+                let cut = (
+                    view.column(rival.along[0]),
+                    view.column(rival.along[1] - view.cell / 2.0) + 1,
+                );
+                left = left
+                    .into_iter()
+                    .flat_map(|(a, b)| [(a, b.min(cut.0)), (a.max(cut.1), b)])
+                    .filter(|(a, b)| a < b)
+                    .collect();
             }
         }
         for (from, to) in left {
-            kept.extend(strips(view, &columns, from..to, strip.across, parameters.labels_min_aspect));
+            kept.extend(strips(
+                view,
+                &columns,
+                from..to,
+                strip.across,
+                parameters.labels_min_aspect,
+            ));
         }
     }
-    kept.sort_by(|a, b| a.middle().total_cmp(&b.middle()).then(a.along[0].total_cmp(&b.along[0])));
+    kept.sort_by(|a, b| {
+        a.middle()
+            .total_cmp(&b.middle())
+            .then(a.along[0].total_cmp(&b.along[0]))
+    });
     kept
 }
 
 /// True when enough structure lies between two strips side by side to part them.
 fn dense(view: &Turned, sides: &[Side], offsets: &[f64], one: &Strip, two: &Strip) -> bool {
     let columns = view.column(one.along[0].max(two.along[0]))..view.column(one.along[1].min(two.along[1])).max(1);
-    let border = if one.middle() < two.middle() { [one.across[1], two.across[0]] } else { [two.across[1], one.across[0]] };
+    let border = if one.middle() < two.middle() {
+        [one.across[1], two.across[0]]
+    } else {
+        [two.across[1], one.across[0]]
+    };
     let (low, high) = (border[0].min(border[1]) - 1e-6, border[0].max(border[1]) + 1e-6);
-    let lines: Vec<&Vec<bool>> =
-        offsets.iter().zip(sides).filter(|(o, _)| **o >= low && **o <= high).map(|(_, side)| &side.faces).collect();
+    let lines: Vec<&Vec<bool>> = offsets
+        .iter()
+        .zip(sides)
+        .filter(|(o, _)| **o >= low && **o <= high)
+        .map(|(_, side)| &side.faces)
+        .collect();
     let count = columns.len();
     count > 0 && columns.filter(|&c| lines.iter().any(|line| line[c])).count() as f64 >= DENSE * count as f64
 }
@@ -159,7 +196,11 @@ impl Side {
             }
             flags
         };
-        Self { walls: joined(BAY, SHORTEST_SIDE), near: joined(BAY / 2.0, 0.0), faces: joined(FACE_GAP, FACE) }
+        Self {
+            walls: joined(BAY, SHORTEST_SIDE),
+            near: joined(BAY / 2.0, 0.0),
+            faces: joined(FACE_GAP, FACE),
+        }
     }
 }
 
@@ -188,13 +229,22 @@ impl Column {
         } else {
             2.0 * self.blocked
         };
-        (if self.parted { -PARTED } else if self.walled { 1.0 } else { -OPEN }) - against
+        (if self.parted {
+            -PARTED
+        } else if self.walled {
+            1.0
+        } else {
+            -OPEN
+        }) - against
     }
 }
 
 fn columns(view: &Turned, sides: [&Side; 2], inner: &[&[bool]], across: [f64; 2]) -> Vec<Column> {
     let margin = MARGIN.min(0.2 * (across[1] - across[0]));
-    let beyond = [[across[0] - BESIDE.1, across[0] - BESIDE.0], [across[1] + BESIDE.0, across[1] + BESIDE.1]];
+    let beyond = [
+        [across[0] - BESIDE.1, across[0] - BESIDE.0],
+        [across[1] + BESIDE.0, across[1] + BESIDE.1],
+    ];
     (0..view.size[0])
         .map(|c| Column {
             blocked: view.blocked(c, across[0] + margin, across[1] - margin),
@@ -208,19 +258,35 @@ fn columns(view: &Turned, sides: [&Side; 2], inner: &[&[bool]], across: [f64; 2]
 
 /// The corridors among a strip's columns: the pieces in which what speaks for a corridor outweighs what speaks against
 /// it, each as long as that holds.
-fn strips(view: &Turned, columns: &[Column], range: std::ops::Range<usize>, across: [f64; 2], aspect: f64) -> Vec<Strip> {
+fn strips(
+    view: &Turned,
+    columns: &[Column],
+    range: std::ops::Range<usize>,
+    across: [f64; 2],
+    aspect: f64,
+) -> Vec<Strip> {
     let scores: Vec<f64> = columns[range.clone()].iter().map(|c| c.score()).collect();
     let mut found = Vec::new();
     for (from, to) in best_pieces(&scores) {
         let piece = &columns[range.start + from..range.start + to];
         let near = piece.iter().filter(|c| c.walled && c.near).count() as f64;
         let faced = |least: u8| piece.iter().filter(|c| c.walled && c.faces >= least).count() as f64;
-        let posts_only = faced(1) < LEAST_FACED * near;
         let walled = piece.iter().filter(|c| c.walled && c.blocked < 0.5).count() as f64 * view.cell;
         let along = [view.along(range.start + from), view.along(range.start + to)];
         let score = scores[from..to].iter().sum::<f64>() * view.cell;
-        let strip = Strip { direction: view.direction, along, across, walled, score };
-        if strip.length() >= aspect * strip.width() && walled >= LEAST_WALLED * strip.length() && !posts_only && !(strip.length() < LONG * strip.width() && faced(2) < LEAST_FACED_TWICE * near && faced(1) < 0.85 * near) {
+        let strip = Strip {
+            direction: view.direction,
+            along,
+            across,
+            walled,
+            score,
+        };
+        let structured = if strip.length() >= LONG * strip.width() {
+            faced(1) >= FACED_LONG * near
+        } else {
+            faced(1) >= FACED * near && (faced(2) >= FACED_TWICE * near || faced(1) >= FACED_ONCE * near)
+        };
+        if structured && strip.length() >= aspect * strip.width() && walled >= LEAST_WALLED * strip.length() {
             found.push(strip);
         }
     }
@@ -243,7 +309,12 @@ fn best_pieces(scores: &[f64]) -> Vec<(usize, usize)> {
         if score <= 0.0 {
             continue;
         }
-        let mut piece = Piece { from: n, to: n + 1, before, after: sum };
+        let mut piece = Piece {
+            from: n,
+            to: n + 1,
+            before,
+            after: sum,
+        };
         while let Some(place) = pieces.iter().rposition(|other| other.before < piece.before) {
             if pieces[place].after >= piece.after {
                 break;

@@ -34,7 +34,9 @@ pub fn find(views: &[Turned], strips: &[Strip]) -> Vec<Meeting> {
         for b in a + 1..strips.len() {
             if strips[a].direction != strips[b].direction
                 && let Some(meeting) = meet(views, strips, [a, b])
-                && found.iter().all(|other| crate::subdivision::distance(other.at, meeting.at) > SAME)
+                && found
+                    .iter()
+                    .all(|other| crate::subdivision::distance(other.at, meeting.at) > SAME)
             {
                 found.push(meeting);
             }
@@ -88,5 +90,59 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
         (1, 1) => JunctionKind::L,
         _ => return None,
     };
-    Some(Meeting { kind, at, corridors: pair, reach })
+    Some(Meeting {
+        kind,
+        at,
+        corridors: pair,
+        reach,
+    })
+}
+
+/// A corridor's end is looked for so far beyond its walls, metres.
+const LOOK: f64 = 2.0;
+/// What closes it is this deep, metres, and lies across this share of its width.
+const DEEP: f64 = 0.4;
+const ACROSS: f64 = 0.5;
+
+/// Dead ends: the places along at which a corridor that meets no other there is closed by something seen. Where it
+/// runs into the unknown, or opens into a hall, it has no end. Each with the corridor and which of its ends it is.
+pub fn ends(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<(usize, usize, f64)> {
+    let mut found = Vec::new();
+    for (n, strip) in strips.iter().enumerate() {
+        let view = &views[strip.direction];
+        for (side, sign) in [(0, -1.0), (1, 1.0)] {
+            let met = meetings.iter().any(|meeting| {
+                let place = meeting.corridors.iter().position(|c| *c == n);
+                place.is_some_and(|p| {
+                    let u = view.place(meeting.at)[0];
+                    (strip.along[side] - u) * sign < meeting.reach[p] + ARM
+                })
+            });
+            if !met && let Some(place) = closed(view, strip, side, sign) {
+                found.push((n, side, place));
+            }
+        }
+    }
+    found
+}
+
+/// Where what closes a strip beyond one of its ends begins.
+fn closed(view: &Turned, strip: &Strip, side: usize, sign: f64) -> Option<f64> {
+    let cells = |metres: f64| (metres / view.cell).ceil() as i64;
+    let last = view.size[0] as i64 - 1;
+    let start = view.column(strip.along[side] - 0.5 * sign * view.cell) as i64;
+    let columns = (0..=cells(LOOK))
+        .map(|step| start + step * sign as i64)
+        .filter(|c| (0..=last).contains(c));
+    let margin = 0.2 * strip.width();
+    let (low, high) = (strip.across[0] + margin, strip.across[1] - margin);
+    let first = columns
+        .into_iter()
+        .find(|&c| view.blocked(c as usize, low, high) > IMPASSABLE)?;
+    // A wall that is not quite square to the corridor shows in several columns.
+    let deep = (-cells(DEEP)..=cells(DEEP))
+        .map(|step| first + step)
+        .filter(|c| (0..=last).contains(c));
+    let across: f64 = deep.map(|c| view.occupied(c as usize, low, high)).sum();
+    (across >= ACROSS).then(|| view.along(first as usize) + if sign < 0.0 { view.cell } else { 0.0 })
 }

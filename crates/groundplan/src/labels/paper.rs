@@ -27,7 +27,9 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
 /// neighbours, X with four.
 fn junctions(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
     let shares = |i: u32, l: u32, k: u32| {
-        nodes[l as usize].iter().any(|(n, _)| *n != i && nodes[k as usize].iter().any(|(m, _)| m == n))
+        nodes[l as usize]
+            .iter()
+            .any(|(n, _)| *n != i && nodes[k as usize].iter().any(|(m, _)| m == n))
     };
     let mut found = Vec::new();
     for (i, neighbours) in nodes.iter().enumerate() {
@@ -59,9 +61,17 @@ fn corridors(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
     let subdivision = evidence.subdivision;
     let edge_of = |link: u32| evidence.adjacency.edges[link as usize] as usize;
     let matches = |face: usize| {
-        let [(_, one), (_, two)] = nodes[face][..] else { return None };
+        let [(_, one), (_, two)] = nodes[face][..] else {
+            return None;
+        };
         let (one, two) = (edge_of(one), edge_of(two));
-        let heading = |e: usize| evidence.lines.directions.get(subdivision.edge_lines[e] as usize).copied();
+        let heading = |e: usize| {
+            evidence
+                .lines
+                .directions
+                .get(subdivision.edge_lines[e] as usize)
+                .copied()
+        };
         let across = heading(one)?;
         let open = subdivision.length(one).max(subdivision.length(two));
         let apart = distance(middle(subdivision, one), middle(subdivision, two));
@@ -89,7 +99,11 @@ fn corridors(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
         }
         faces.sort_unstable();
         let edges: Vec<usize> = faces.iter().filter_map(|&f| ends[f as usize]).flatten().collect();
-        let outer: Vec<usize> = edges.iter().copied().filter(|e| edges.iter().filter(|o| *o == e).count() == 1).collect();
+        let outer: Vec<usize> = edges
+            .iter()
+            .copied()
+            .filter(|e| edges.iter().filter(|o| *o == e).count() == 1)
+            .collect();
         let [first, last] = outer[..] else { continue };
         let axis = [middle(subdivision, first), middle(subdivision, last)].map(|p| p.map(tidy));
         let area: f64 = faces.iter().map(|&f| subdivision.areas[f as usize]).sum();

@@ -3,7 +3,7 @@
 use super::corridors::{self, Strip};
 use super::junctions::{self, Meeting};
 use super::turned::Turned;
-use super::{Evidence, Label};
+use super::{Evidence, JunctionKind, Label};
 use crate::grid::{State, tidy};
 
 /// A corridor that meets no other is at least so many times as long as wide.
@@ -12,14 +12,20 @@ const ALONE: f64 = 4.0;
 const NICHE: f64 = 1.5;
 
 pub fn find(evidence: &Evidence) -> Vec<Label> {
-    let views: Vec<Turned> = (0..evidence.directions.angles.len()).map(|d| Turned::new(evidence, d)).collect();
+    let views: Vec<Turned> = (0..evidence.directions.angles.len())
+        .map(|d| Turned::new(evidence, d))
+        .collect();
     let (strips, meetings) = connected(&views, corridors::find(evidence, &views));
-    let extents = extents(&views, &strips, &meetings);
+    let mut extents = extents(&views, &strips, &meetings);
+    let ends = junctions::ends(&views, &strips, &meetings);
+    for &(n, side, place) in &ends {
+        extents[n][side] = place;
+    }
     let mut free: Vec<u32> = (0..evidence.subdivision.faces() as u32)
         .filter(|&face| evidence.occupancy.states[face as usize] == State::Free)
         .collect();
     let mut labels = Vec::new();
-    let junctions: Vec<Label> = meetings
+    let mut junctions: Vec<Label> = meetings
         .iter()
         .map(|meeting| {
             let polygon = square(&views, &strips, meeting);
@@ -32,12 +38,29 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
             }
         })
         .collect();
+    for &(n, side, place) in &ends {
+        let strip = &strips[n];
+        let view = &views[strip.direction];
+        let inwards = if side == 0 { strip.width() } else { -strip.width() };
+        let polygon = rectangle(
+            view,
+            [place.min(place + inwards), place.max(place + inwards)],
+            strip.across,
+        );
+        junctions.push(Label::Junction {
+            kind: JunctionKind::End,
+            faces: take(evidence, &mut free, &polygon),
+            polygon,
+            at: view.to_map([place, strip.middle()]).map(tidy),
+            corridors: vec![n as u32],
+        });
+    }
     for (n, (strip, along)) in strips.iter().zip(&extents).enumerate() {
         let view = &views[strip.direction];
-        let polygon = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[u, v]| view.to_map([along[u], strip.across[v]]).map(tidy));
+        let polygon = rectangle(view, *along, strip.across);
         labels.push(Label::Corridor {
             faces: take(evidence, &mut free, &polygon),
-            polygon: polygon.to_vec(),
+            polygon,
             axis: along.map(|u| view.to_map([u, strip.middle()]).map(tidy)),
             width: tidy(strip.width()),
             name: format!("A{:02}", n + 1),
@@ -53,7 +76,10 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
         let meetings = junctions::find(views, &strips);
         let leads = |n: usize| {
             let met = meetings.iter().filter(|m| m.corridors.contains(&n));
-            let reach = met.clone().map(|m| m.reach[usize::from(m.corridors[1] == n)]).sum::<f64>();
+            let reach = met
+                .clone()
+                .map(|m| m.reach[usize::from(m.corridors[1] == n)])
+                .sum::<f64>();
             let beyond = strips[n].length() - reach;
             match met.count() {
                 0 => strips[n].length() >= ALONE * strips[n].width(),
@@ -102,6 +128,13 @@ fn square(views: &[Turned], strips: &[Strip], meeting: &Meeting) -> Vec<[f64; 2]
     corners
 }
 
+/// A rectangle in a direction's own places, as a polygon in the map frame.
+fn rectangle(view: &Turned, along: [f64; 2], across: [f64; 2]) -> Vec<[f64; 2]> {
+    [[0, 0], [1, 0], [1, 1], [0, 1]]
+        .map(|[u, v]| view.to_map([along[u], across[v]]).map(tidy))
+        .to_vec()
+}
+
 /// Takes the faces whose centres lie in a convex polygon out of those that are free.
 fn take(evidence: &Evidence, free: &mut Vec<u32>, polygon: &[[f64; 2]]) -> Vec<u32> {
     let centres = &evidence.subdivision.centres;
@@ -113,5 +146,8 @@ fn take(evidence: &Evidence, free: &mut Vec<u32>, polygon: &[[f64; 2]]) -> Vec<u
 /// True when a counter-clockwise convex polygon holds the point.
 fn holds(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let next = polygon.iter().cycle().skip(1);
-    polygon.iter().zip(next).all(|(p, q)| (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) >= 0.0)
+    polygon
+        .iter()
+        .zip(next)
+        .all(|(p, q)| (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) >= 0.0)
 }

@@ -24,8 +24,8 @@ pub struct Turned {
     pub start: [f64; 2],
     /// Cells along and across.
     pub size: [usize; 2],
-    /// Sums of blocked samples over v, for each column of cells one more than there are cells.
-    sums: Vec<u32>,
+    /// Sums of blocked samples over v, and of those the occupied, for each column one more than there are cells.
+    sums: Vec<[u32; 2]>,
     /// Samples in a cell.
     samples: u32,
     /// Lines of the direction: their ids, ascending in offset.
@@ -69,7 +69,11 @@ impl Turned {
         let frame = &evidence.grid.frame;
         let (nu, nv) = (self.size[0], self.size[1]);
         let rows: Vec<&[u8]> = (0..frame.height).map(|y| evidence.grid.row(y)).collect();
-        let free = evidence.grid.table.states.map(|s| s == State::Free);
+        let counts = evidence
+            .grid
+            .table
+            .states
+            .map(|s| [u32::from(s != State::Free), u32::from(s == State::Occupied)]);
         let per_side = f64::from(self.samples).sqrt();
         // Steps on the grid, in pixels, of one sample along and across.
         let origin = frame.to_pixels(self.point(0.0, 0.0));
@@ -82,8 +86,8 @@ impl Turned {
         let columns = map_bands(nu, evidence.threads, |band| {
             let mut sums = Vec::with_capacity(band.len() * (nv + 1));
             for column in band {
-                let mut sum = 0u32;
-                sums.push(0);
+                let mut sum = [0u32; 2];
+                sums.push(sum);
                 for n in 0..nv {
                     for i in 0..count {
                         let a = (column * count + i) as f64 + 0.5;
@@ -91,8 +95,15 @@ impl Turned {
                             let b = (n * count + j) as f64 + 0.5;
                             let x = origin[0] + a * along[0] + b * across[0];
                             let y = origin[1] + a * along[1] + b * across[1];
-                            let inside = x >= 0.0 && y >= 0.0 && (x as usize) < frame.width && (y as usize) < frame.height;
-                            sum += u32::from(!(inside && free[usize::from(rows[y as usize][x as usize])]));
+                            let inside =
+                                x >= 0.0 && y >= 0.0 && (x as usize) < frame.width && (y as usize) < frame.height;
+                            let [blocked, occupied] = if inside {
+                                counts[usize::from(rows[y as usize][x as usize])]
+                            } else {
+                                [1, 0]
+                            };
+                            sum[0] += blocked;
+                            sum[1] += occupied;
                         }
                     }
                     sums.push(sum);
@@ -106,14 +117,22 @@ impl Turned {
     fn cover_lines(&mut self, evidence: &Evidence) {
         let frame = &evidence.grid.frame;
         let lines = evidence.lines;
-        self.lines = (0..lines.len()).filter(|&n| lines.directions[n] as usize == self.direction).collect();
-        self.lines.sort_by(|&a, &b| lines.offsets[a].total_cmp(&lines.offsets[b]));
+        self.lines = (0..lines.len())
+            .filter(|&n| lines.directions[n] as usize == self.direction)
+            .collect();
+        self.lines
+            .sort_by(|&a, &b| lines.offsets[a].total_cmp(&lines.offsets[b]));
         self.covered = vec![vec![false; self.size[0]]; self.lines.len()];
         let near = NEAR.0.max(NEAR.1 * frame.resolution);
         let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
         let on_grid = frame.angle_to_grid(self.angle);
         let gradients = evidence.gradients;
-        for ((pixel, &along), &magnitude) in gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes) {
+        for ((pixel, &along), &magnitude) in gradients
+            .pixels
+            .iter()
+            .zip(&gradients.angles)
+            .zip(&gradients.magnitudes)
+        {
             if weight(f64::from(along), magnitude, on_grid, tolerance, true) == 0 {
                 continue;
             }
@@ -156,14 +175,23 @@ impl Turned {
         self.start[0] + column as f64 * self.cell
     }
 
-    /// Share of a column that is not free between two places across, 0 to 1.
+    /// Share of a column that is not free between two places across, 0 to 1; all of it where there is no cell between.
     pub fn blocked(&self, column: usize, low: f64, high: f64) -> f64 {
+        self.share(column, low, high, 0)
+    }
+
+    /// Share of a column that is occupied.
+    pub fn occupied(&self, column: usize, low: f64, high: f64) -> f64 {
+        self.share(column, low, high, 1)
+    }
+
+    fn share(&self, column: usize, low: f64, high: f64, kind: usize) -> f64 {
         let at = |v: f64| (((v - self.start[1]) / self.cell).round().max(0.0) as usize).min(self.size[1]);
         let (from, to) = (at(low), at(high).max(at(low)));
         if from == to {
             return 1.0;
         }
         let sums = &self.sums[column * (self.size[1] + 1)..];
-        f64::from(sums[to] - sums[from]) / f64::from((to - from) as u32 * self.samples)
+        f64::from(sums[to][kind] - sums[from][kind]) / f64::from((to - from) as u32 * self.samples)
     }
 }

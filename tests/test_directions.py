@@ -1,0 +1,120 @@
+"""II-A: the directions of a map, found in number and angle."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import zoo
+from zoo import RESOLUTION, TURNS, ZOO, Canvas, apart
+
+import groundplan
+
+
+def angles_of(picture: zoo.Picture) -> zoo.Points:
+    return np.degrees(groundplan.survey(picture, resolution=RESOLUTION).directions.angles)
+
+
+def wall(degrees: float, length: float, width: float) -> zoo.Picture:
+    along = np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
+    start = np.array([100.0, 100.0]) - length / 2 * along
+    return Canvas(200, 200, zoo.FREE).bar((float(start[0]), float(start[1])), degrees, length, width).picture
+
+
+@pytest.mark.parametrize("width", [1, 2, 3])
+def test_a_wall_at_any_angle_is_measured_within_a_tenth_of_a_degree(width: float) -> None:
+    for degrees in range(1, 90, 2):
+        angles = angles_of(wall(degrees, 180, width))
+        assert len(angles) == 1
+        assert apart(np.radians(angles), [np.radians(degrees)]) < np.radians(0.1), (degrees, angles)
+
+
+@pytest.mark.parametrize("degrees", [0, 45, 90])
+@pytest.mark.parametrize("length", [60, 100, 180])
+def test_a_wall_along_the_pixels_is_measured_exactly(degrees: float, length: float) -> None:
+    angles = angles_of(wall(degrees, length, 2))
+    assert len(angles) == 1
+    assert apart(np.radians(angles), [np.radians(degrees)]) < np.radians(0.02), angles
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("single_room", [0, 90]),
+        ("two_rooms_with_door", [0, 90]),
+        ("crossing", [0, 90]),
+        ("comb_of_racks", [0, 90]),
+        ("thick_walls", [0, 90]),
+        ("double_walls", [0, 90]),
+        ("rows_of_offices", [0, 90]),
+        ("pillars", [0, 90]),
+        ("turned_warehouse", [17, -73]),
+        ("skewed", [0, 70]),
+        ("triangle_grid", [0, 60, -60]),
+        ("freestanding_wall", [0]),
+        ("diagonal_only", [45]),
+    ],
+)
+def test_a_map_has_as_many_directions_as_its_walls(name: str, expected: list[float]) -> None:
+    found = zoo.surveyed(name).directions
+    assert len(found) == len(expected)
+    assert (apart(np.radians(expected), found.angles).min(axis=1) < np.radians(0.15)).all(), np.degrees(found.angles)
+
+
+@pytest.mark.parametrize("name", ["empty", "all_unknown", "all_occupied", "one_pixel", "one_row", "noise"])
+def test_a_map_without_structure_has_no_directions_and_says_so(name: str) -> None:
+    survey = zoo.surveyed(name)
+    assert len(survey.directions) == 0
+    assert "no-structure" in {warning.code for warning in survey.warnings}
+
+
+@pytest.mark.parametrize("turn", TURNS)
+@pytest.mark.parametrize("name", sorted(ZOO.keys() - {"all_occupied"}))
+def test_a_turned_map_has_the_turned_directions(name: str, turn: int) -> None:
+    original, turned = zoo.surveyed(name).directions, zoo.surveyed(name, turn).directions
+    assert len(turned) == len(original)
+    gaps = apart(zoo.variants(name)[turn].angles(original.angles), turned.angles)
+    assert (gaps < np.radians(0.15)).sum() == len(original), np.degrees(gaps)
+
+
+def test_angles_lie_between_minus_and_plus_a_right_angle() -> None:
+    for name in ZOO:
+        angles = zoo.surveyed(name).directions.angles
+        assert ((angles >= -np.pi / 2) & (angles < np.pi / 2)).all()
+
+
+def test_weights_are_shares_of_the_strongest() -> None:
+    for name in ZOO:
+        weights = zoo.surveyed(name).directions.weights
+        assert len(weights) == 0 or weights[0] == 1.0
+        assert (np.diff(weights) <= 0).all()
+
+
+def test_no_more_directions_than_asked_for() -> None:
+    picture = ZOO["triangle_grid"]()
+    assert len(groundplan.survey(picture, resolution=RESOLUTION, directions_count=2).directions) == 2
+    survey = groundplan.survey(ZOO["freestanding_wall"](), resolution=RESOLUTION, directions_count=3)
+    assert len(survey.directions) == 1
+    assert "few-directions" in {warning.code for warning in survey.warnings}
+
+
+def test_directions_that_are_given_are_taken() -> None:
+    survey = groundplan.survey(ZOO["single_room"](), resolution=RESOLUTION, directions_angles_deg=[10.0, 85.0, 190.0])
+    assert sorted(np.degrees(survey.directions.angles)) == pytest.approx([10.0, 85.0])
+    assert survey.problems() == []
+
+
+def test_the_histogram_counts_every_edge_pixel_once() -> None:
+    map = groundplan.from_array(ZOO["turned_warehouse"](), RESOLUTION)
+    gradients = groundplan.find_gradients(map)
+    histogram = groundplan.find_directions(map, gradients).histogram
+    assert histogram.sum() == gradients.magnitudes.sum(dtype=np.int64)
+
+
+def test_edge_pixels_are_taken_with_a_neighbour_that_is_not() -> None:
+    picture = ZOO["turned_warehouse"]()
+    taken = np.pad(picture == zoo.OCCUPIED, 1, mode="edge")
+    inner = taken[:-2, 1:-1] & taken[2:, 1:-1] & taken[1:-1, :-2] & taken[1:-1, 2:]
+    rows, columns = np.nonzero(taken[1:-1, 1:-1] & ~inner)
+    expected = sorted(zip(columns.tolist(), (len(picture) - 1 - rows).tolist(), strict=True))
+    found = groundplan.find_gradients(groundplan.from_array(picture, RESOLUTION)).pixels
+    assert sorted(map(tuple, found.tolist())) == expected

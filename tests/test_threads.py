@@ -1,0 +1,40 @@
+"""Any number of threads gives the same bytes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import zoo
+from zoo import RESOLUTION, ZOO
+
+import groundplan
+
+
+def tall() -> zoo.Picture:
+    """Many row bands: the warehouse four times over, the last with noise."""
+    one = ZOO["turned_warehouse"]()
+    noisy = one.copy()
+    noisy[np.random.default_rng(7).random(one.shape) < 0.05] = zoo.OCCUPIED
+    return np.concatenate([one, noisy, np.rot90(one, 2), one])
+
+
+@pytest.mark.parametrize("name", [*ZOO, "tall"])
+def test_a_survey_is_the_same_with_one_two_and_four_threads(name: str) -> None:
+    picture = tall() if name == "tall" else ZOO[name]()
+    one, *others = (groundplan.survey(picture, resolution=RESOLUTION, threads=n).to_json() for n in (1, 2, 4, 64))
+    assert all(other == one for other in others)
+
+
+def test_stages_are_the_same_with_one_and_four_threads() -> None:
+    map = groundplan.from_array(tall(), RESOLUTION)
+    gradients = groundplan.find_gradients(map, threads=1)
+    assert groundplan.find_gradients(map, threads=4) == gradients
+    directions = groundplan.find_directions(map, gradients)
+    lines = groundplan.find_lines(groundplan.find_radiograms(map, directions, gradients))
+    one, four = (groundplan.find_occupancy(map, directions, lines, gradients, threads=n) for n in (1, 4))
+    assert one == four
+
+
+def test_the_same_map_twice_is_the_same_survey() -> None:
+    one, two = (groundplan.survey(tall(), resolution=RESOLUTION).to_json() for _ in range(2))
+    assert one == two
