@@ -72,13 +72,14 @@ impl<'py> Named<'py> {
         self.with(name, array)
     }
 
-    pub fn done(self) -> PyResult<Bound<'py, PyDict>> {
-        Ok(self.0)
+    pub fn done(self) -> Bound<'py, PyDict> {
+        self.0
     }
 }
 
 fn item<'py>(dict: &Bound<'py, PyDict>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-    dict.get_item(name)?.ok_or_else(|| PyValueError::new_err(format!("{name} is missing")))
+    dict.get_item(name)?
+        .ok_or_else(|| PyValueError::new_err(format!("{name} is missing")))
 }
 
 fn number<'py, T: FromPyObjectOwned<'py>>(dict: &Bound<'py, PyDict>, name: &str) -> PyResult<T> {
@@ -96,7 +97,10 @@ fn pairs<T: Element + Copy>(dict: &Bound<'_, PyDict>, name: &str) -> PyResult<Ve
     let array = item.cast::<PyArray2<T>>()?.readonly();
     let array = array.as_array();
     if array.ncols() != 2 {
-        return Err(PyValueError::new_err(format!("{name} has {} columns and not 2", array.ncols())));
+        return Err(PyValueError::new_err(format!(
+            "{name} has {} columns and not 2",
+            array.ncols()
+        )));
     }
     Ok(array.rows().into_iter().map(|row| [row[0], row[1]]).collect())
 }
@@ -136,7 +140,11 @@ fn to_value(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
         }
     }
     let message = format!("{name} cannot be {}", value.repr()?);
-    let fault = ParameterError { code: "parameter.range", message, hint: "a number, a word or a list".to_owned() };
+    let fault = ParameterError {
+        code: "parameter.range",
+        message,
+        hint: "a number, a word or a list".to_owned(),
+    };
     Err(raise(value.py(), &fault))
 }
 
@@ -167,8 +175,12 @@ pub fn values<'py>(py: Python<'py>, parameters: &Parameters) -> PyResult<Bound<'
 }
 
 pub fn table_row<'py>(py: Python<'py>, row: &Parameter) -> PyResult<Bound<'py, PyDict>> {
-    let words = if let Range::Word(words) = row.range { words.to_vec() } else { Vec::new() };
-    Named::new(py)
+    let words = if let Range::Word(words) = row.range {
+        words.to_vec()
+    } else {
+        Vec::new()
+    };
+    Ok(Named::new(py)
         .with("name", row.name)?
         .with("unit", row.unit)?
         .with("default", from_value(py, &row.default())?)?
@@ -176,15 +188,15 @@ pub fn table_row<'py>(py: Python<'py>, row: &Parameter) -> PyResult<Bound<'py, P
         .with("words", words)?
         .with("sentence", row.sentence)?
         .with("section", row.section)?
-        .done()
+        .done())
 }
 
 pub fn from_gradients<'py>(py: Python<'py>, made: &Gradients) -> PyResult<Bound<'py, PyDict>> {
-    Named::new(py)
+    Ok(Named::new(py)
         .pairs("pixels", &made.pixels)?
         .list("angles", made.angles.clone())?
         .list("magnitudes", made.magnitudes.clone())?
-        .done()
+        .done())
 }
 
 pub fn gradients(dict: &Bound<'_, PyDict>) -> PyResult<Gradients> {
@@ -196,12 +208,12 @@ pub fn gradients(dict: &Bound<'_, PyDict>) -> PyResult<Gradients> {
 }
 
 pub fn from_directions<'py>(py: Python<'py>, made: &Directions) -> PyResult<Bound<'py, PyDict>> {
-    Named::new(py)
+    Ok(Named::new(py)
         .list("angles", made.angles.clone())?
         .list("weights", made.weights.clone())?
         .list("histogram", made.histogram.clone())?
         .with("explained", made.explained)?
-        .done()
+        .done())
 }
 
 pub fn directions(dict: &Bound<'_, PyDict>) -> PyResult<Directions> {
@@ -215,12 +227,12 @@ pub fn directions(dict: &Bound<'_, PyDict>) -> PyResult<Directions> {
 
 pub fn from_radiograms<'py>(py: Python<'py>, made: &[Radiogram]) -> PyResult<Vec<Bound<'py, PyDict>>> {
     let convert = |r: &Radiogram| {
-        Named::new(py)
+        Ok(Named::new(py)
             .with("direction", r.direction)?
             .with("start", r.start)?
             .with("step", r.step)?
             .list("values", r.values.clone())?
-            .done()
+            .done())
     };
     made.iter().map(convert).collect()
 }
@@ -235,20 +247,23 @@ pub fn radiogram(dict: &Bound<'_, PyDict>) -> PyResult<Radiogram> {
 }
 
 pub fn from_response<'py>(py: Python<'py>, made: &Response, step: f64) -> PyResult<Bound<'py, PyDict>> {
-    Named::new(py)
+    Ok(Named::new(py)
         .list("widths", made.widths.iter().map(|w| w * step).collect())?
-        .with("rows", PyArray2::from_vec2(py, &made.rows).map_err(|e| PyValueError::new_err(e.to_string()))?)?
-        .done()
+        .with(
+            "rows",
+            PyArray2::from_vec2(py, &made.rows).map_err(|e| PyValueError::new_err(e.to_string()))?,
+        )?
+        .done())
 }
 
 pub fn from_lines<'py>(py: Python<'py>, made: &Lines) -> PyResult<Bound<'py, PyDict>> {
-    Named::new(py)
+    Ok(Named::new(py)
         .list("directions", made.directions.clone())?
         .list("offsets", made.offsets.clone())?
         .list("amplitudes", made.amplitudes.clone())?
         .list("widths", made.widths.clone())?
         .with("min_amplitude", made.min_amplitude)?
-        .done()
+        .done())
 }
 
 pub fn lines(dict: &Bound<'_, PyDict>) -> PyResult<Lines> {
@@ -262,9 +277,12 @@ pub fn lines(dict: &Bound<'_, PyDict>) -> PyResult<Lines> {
 }
 
 pub fn from_subdivision<'py>(py: Python<'py>, made: &Subdivision) -> PyResult<Bound<'py, PyDict>> {
-    let sides: Vec<[i32; 2]> =
-        made.edge_faces.iter().map(|f| f.map(|f| if f == NONE { -1 } else { f as i32 })).collect();
-    Named::new(py)
+    let sides: Vec<[i32; 2]> = made
+        .edge_faces
+        .iter()
+        .map(|f| f.map(|f| if f == NONE { -1 } else { f as i32 }))
+        .collect();
+    Ok(Named::new(py)
         .pairs("vertices", &made.vertices)?
         .pairs("edge_vertices", &made.edge_vertices)?
         .list("edge_lines", signed(&made.edge_lines))?
@@ -275,7 +293,7 @@ pub fn from_subdivision<'py>(py: Python<'py>, made: &Subdivision) -> PyResult<Bo
         .pairs("centres", &made.centres)?
         .list("areas", made.areas.clone())?
         .with("map_area", made.map_area)?
-        .done()
+        .done())
 }
 
 pub fn subdivision(dict: &Bound<'_, PyDict>) -> PyResult<Subdivision> {
@@ -284,7 +302,10 @@ pub fn subdivision(dict: &Bound<'_, PyDict>) -> PyResult<Subdivision> {
         vertices: pairs(dict, "vertices")?,
         edge_vertices: pairs(dict, "edge_vertices")?,
         edge_lines: unsigned(&list::<i32>(dict, "edge_lines")?),
-        edge_faces: sides.into_iter().map(|f| f.map(|f| u32::try_from(f).unwrap_or(NONE))).collect(),
+        edge_faces: sides
+            .into_iter()
+            .map(|f| f.map(|f| u32::try_from(f).unwrap_or(NONE)))
+            .collect(),
         face_vertices: list(dict, "face_vertices")?,
         face_edges: list(dict, "face_edges")?,
         face_offsets: list(dict, "face_offsets")?,
@@ -295,14 +316,14 @@ pub fn subdivision(dict: &Bound<'_, PyDict>) -> PyResult<Subdivision> {
 }
 
 pub fn from_occupancy<'py>(py: Python<'py>, made: &Occupancy) -> PyResult<Bound<'py, PyDict>> {
-    Named::new(py)
+    Ok(Named::new(py)
         .list("faces", made.faces.clone())?
         .list("unknown", made.unknown.clone())?
         .list("free", made.free.clone())?
         .list("pixels", made.pixels.clone())?
         .list("states", made.states.iter().map(|s| *s as u8).collect())?
         .list("edges", made.edges.clone())?
-        .done()
+        .done())
 }
 
 pub fn occupancy(dict: &Bound<'_, PyDict>) -> PyResult<Occupancy> {
@@ -324,13 +345,16 @@ pub fn occupancy(dict: &Bound<'_, PyDict>) -> PyResult<Occupancy> {
 
 pub fn from_walls<'py>(py: Python<'py>, made: &Walls) -> PyResult<Bound<'py, PyDict>> {
     let ends: Vec<[f64; 2]> = made.walls.iter().flat_map(|w| w.points).collect();
-    Named::new(py)
+    Ok(Named::new(py)
         .list("cogent", made.cogent.clone())?
         .list("disparity", made.disparity.clone())?
         .pairs("points", &ends)?
         .list("lines", made.walls.iter().map(|w| w.line).collect())?
-        .list("freestanding", made.walls.iter().map(|w| w.kind == WallKind::Freestanding).collect())?
-        .done()
+        .list(
+            "freestanding",
+            made.walls.iter().map(|w| w.kind == WallKind::Freestanding).collect(),
+        )?
+        .done())
 }
 
 pub fn walls(dict: &Bound<'_, PyDict>) -> PyResult<Walls> {
@@ -340,7 +364,11 @@ pub fn walls(dict: &Bound<'_, PyDict>) -> PyResult<Walls> {
     let wall = |((ends, &line), &free): ((&[[f64; 2]], &u32), &bool)| Wall {
         points: [ends[0], ends[1]],
         line,
-        kind: if free { WallKind::Freestanding } else { WallKind::Separating },
+        kind: if free {
+            WallKind::Freestanding
+        } else {
+            WallKind::Separating
+        },
     };
     Ok(Walls {
         cogent: list(dict, "cogent")?,
@@ -350,32 +378,46 @@ pub fn walls(dict: &Bound<'_, PyDict>) -> PyResult<Walls> {
 }
 
 pub fn from_adjacency<'py>(py: Python<'py>, made: &Adjacency) -> PyResult<Bound<'py, PyDict>> {
-    Named::new(py)
+    Ok(Named::new(py)
         .pairs("faces", &made.faces)?
         .list("edges", made.edges.clone())?
         .list("connected", made.connected.clone())?
-        .done()
+        .done())
 }
 
 /// Labels are few: each is a dictionary of plain values, as in the survey's JSON.
 pub fn from_labels<'py>(py: Python<'py>, made: &[Label]) -> PyResult<Vec<Bound<'py, PyDict>>> {
-    let convert = |label: &Label| match label {
-        Label::Corridor { faces, polygon, axis, width, name } => Named::new(py)
-            .with("kind", "corridor")?
-            .with("faces", faces)?
-            .with("polygon", polygon)?
-            .with("axis", axis)?
-            .with("width", *width)?
-            .with("name", name)?
-            .done(),
-        Label::Junction { kind, faces, polygon, at, corridors } => Named::new(py)
-            .with("kind", "junction")?
-            .with("type", kind.name())?
-            .with("faces", faces)?
-            .with("polygon", polygon)?
-            .with("at", at)?
-            .with("corridors", corridors)?
-            .done(),
+    let convert = |label: &Label| {
+        let named = Named::new(py);
+        let named = match label {
+            Label::Corridor {
+                faces,
+                polygon,
+                axis,
+                width,
+                name,
+            } => named
+                .with("kind", "corridor")?
+                .with("faces", faces)?
+                .with("polygon", polygon)?
+                .with("axis", axis)?
+                .with("width", *width)?
+                .with("name", name)?,
+            Label::Junction {
+                kind,
+                faces,
+                polygon,
+                at,
+                corridors,
+            } => named
+                .with("kind", "junction")?
+                .with("type", kind.name())?
+                .with("faces", faces)?
+                .with("polygon", polygon)?
+                .with("at", at)?
+                .with("corridors", corridors)?,
+        };
+        Ok(named.done())
     };
     made.iter().map(convert).collect()
 }

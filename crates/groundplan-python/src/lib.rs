@@ -2,6 +2,8 @@
 
 mod convert;
 
+// What PyO3 hands over it hands over by value.
+#[allow(clippy::needless_pass_by_value)]
 /// The method, as Python sees it. Every stage takes and gives dictionaries of arrays, which `groundplan.survey` wraps.
 #[pyo3::pymodule]
 mod _core {
@@ -46,7 +48,7 @@ mod _core {
             lines: lines.map(convert::lines).transpose()?,
         };
         let made = layout.with_grid(py, |grid| groundplan::survey(grid, &parameters, given, threads))?;
-        Named::new(py)
+        Ok(Named::new(py)
             .with("directions", convert::from_directions(py, &made.directions)?)?
             .with("radiograms", convert::from_radiograms(py, &made.radiograms)?)?
             .with("lines", convert::from_lines(py, &made.lines)?)?
@@ -55,8 +57,14 @@ mod _core {
             .with("walls", convert::from_walls(py, &made.walls)?)?
             .with("adjacency", convert::from_adjacency(py, &made.adjacency)?)?
             .with("labels", convert::from_labels(py, &made.labels)?)?
-            .with("warnings", made.warnings.into_iter().map(|w| (w.code, w.message)).collect::<Vec<_>>())?
-            .done()
+            .with(
+                "warnings",
+                made.warnings
+                    .into_iter()
+                    .map(|w| (w.code, w.message))
+                    .collect::<Vec<_>>(),
+            )?
+            .done())
     }
 
     /// II-A: oriented gradients of the edge pixels.
@@ -80,8 +88,11 @@ mod _core {
         gradients: &Bound<'py, PyDict>,
         parameters: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let made =
-            directions::find_directions(&layout.frame(), &convert::gradients(gradients)?, &convert::parameters(parameters)?);
+        let made = directions::find_directions(
+            &layout.frame(),
+            &convert::gradients(gradients)?,
+            &convert::parameters(parameters)?,
+        );
         convert::from_directions(py, &made)
     }
 
@@ -96,7 +107,10 @@ mod _core {
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let (gradients, directions) = (convert::gradients(gradients)?, convert::directions(directions)?);
         let parameters = convert::parameters(parameters)?;
-        convert::from_radiograms(py, &radiograms::find_radiograms(&layout.frame(), &gradients, &directions, &parameters))
+        convert::from_radiograms(
+            py,
+            &radiograms::find_radiograms(&layout.frame(), &gradients, &directions, &parameters),
+        )
     }
 
     /// II-B: the wavelet response that a radiogram's peaks are read from: widths in metres, and a row for each.
@@ -118,7 +132,10 @@ mod _core {
         radiograms: Vec<Bound<'py, PyDict>>,
         parameters: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let radiograms = radiograms.iter().map(convert::radiogram).collect::<PyResult<Vec<_>>>()?;
+        let radiograms = radiograms
+            .iter()
+            .map(convert::radiogram)
+            .collect::<PyResult<Vec<_>>>()?;
         convert::from_lines(py, &lines::find_lines(&radiograms, &convert::parameters(parameters)?))
     }
 
@@ -157,7 +174,15 @@ mod _core {
         let (gradients, parameters) = (convert::gradients(gradients)?, convert::parameters(parameters)?);
         let made = layout.with_grid(py, |grid| {
             let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines);
-            occupancy::find_occupancy(grid, &arrangement, &directions, &lines, &gradients, &parameters, threads)
+            occupancy::find_occupancy(
+                grid,
+                &arrangement,
+                &directions,
+                &lines,
+                &gradients,
+                &parameters,
+                threads,
+            )
         })?;
         convert::from_occupancy(py, &made)
     }
@@ -171,7 +196,10 @@ mod _core {
         parameters: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (subdivision, occupancy) = (convert::subdivision(subdivision)?, convert::occupancy(occupancy)?);
-        convert::from_walls(py, &walls::find_walls(&subdivision, &occupancy, &convert::parameters(parameters)?))
+        convert::from_walls(
+            py,
+            &walls::find_walls(&subdivision, &occupancy, &convert::parameters(parameters)?),
+        )
     }
 
     /// II-D, II-E: the dual.

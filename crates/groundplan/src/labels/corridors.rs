@@ -7,6 +7,7 @@
 
 use super::Evidence;
 use super::turned::Turned;
+use crate::parameters::Parameters;
 
 /// A strip of free space along one direction, in the direction's own places (metres along and across).
 #[derive(Clone, Debug, PartialEq)]
@@ -17,8 +18,6 @@ pub struct Strip {
     pub along: [f64; 2],
     /// Its two sides, across.
     pub across: [f64; 2],
-    /// Length over which both sides are walls, metres.
-    pub walled: f64,
     /// What speaks for it less what speaks against it, metres.
     pub score: f64,
 }
@@ -36,7 +35,7 @@ impl Strip {
 
     /// Place across of its centre line.
     pub fn middle(&self) -> f64 {
-        (self.across[0] + self.across[1]) / 2.0
+        f64::midpoint(self.across[0], self.across[1])
     }
 }
 
@@ -87,63 +86,14 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
 }
 
 fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
-    let parameters = evidence.parameters;
-    let sides: Vec<Side> = view
-        .covered
-        .iter()
-        .map(|covered| Side::new(covered, view.cell))
-        .collect();
-    let offsets: Vec<f64> = view.lines.iter().map(|&n| evidence.lines.offsets[n]).collect();
-    let mut candidates = Vec::new();
-    for low in 0..offsets.len() {
-        for high in low + 1..offsets.len() {
-            let width = offsets[high] - offsets[low];
-            if width > parameters.labels_max_width {
-                break;
-            }
-            if width >= parameters.labels_min_width {
-                let across = [offsets[low], offsets[high]];
-                let margin = INNER.min(0.25 * width);
-                let within =
-                    (low + 1..high).filter(|&n| offsets[n] - across[0] > margin && across[1] - offsets[n] > margin);
-                let inner: Vec<&[bool]> = within.map(|n| sides[n].faces.as_slice()).collect();
-                let columns = columns(view, [&sides[low], &sides[high]], &inner, across);
-                let found = strips(view, &columns, 0..view.size[0], across, parameters.labels_min_aspect);
-                candidates.extend(found.into_iter().map(|strip| (strip, columns.clone())));
-            }
-        }
-    }
-    candidates.sort_by(|(a, _), (b, _)| b.score.total_cmp(&a.score));
+    let family = Family::new(evidence, view);
+    let mut candidates = family.candidates();
+    candidates.sort_by(|a, b| b.strip.score.total_cmp(&a.strip.score));
     let mut kept: Vec<Strip> = Vec::new();
-    for (strip, columns) in candidates {
-        // What stronger rivals leave of it.
-        let mut left = vec![(
-            view.column(strip.along[0]),
-            view.column(strip.along[1] - view.cell / 2.0) + 1,
-        )];
-        for rival in &kept {
-            let shared = strip.across[1].min(rival.across[1]) - strip.across[0].max(rival.across[0]);
-            let beside = shared.abs() < INNER && !dense(view, &sides, &offsets, &strip, rival);
-            if shared > RIVAL * strip.width().min(rival.width()) || beside {
-                let cut = (
-                    view.column(rival.along[0]),
-                    view.column(rival.along[1] - view.cell / 2.0) + 1,
-                );
-                left = left
-                    .into_iter()
-                    .flat_map(|(a, b)| [(a, b.min(cut.0)), (a.max(cut.1), b)])
-                    .filter(|(a, b)| a < b)
-                    .collect();
-            }
-        }
-        for (from, to) in left {
-            kept.extend(strips(
-                view,
-                &columns,
-                from..to,
-                strip.across,
-                parameters.labels_min_aspect,
-            ));
+    for candidate in candidates {
+        let columns = family.columns(candidate.sides);
+        for range in family.left(&candidate.strip, &kept) {
+            kept.extend(family.strips(&columns, range, candidate.strip.across));
         }
     }
     kept.sort_by(|a, b| {
@@ -154,23 +104,166 @@ fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
     kept
 }
 
-/// True when enough structure lies between two strips side by side to part them.
-fn dense(view: &Turned, sides: &[Side], offsets: &[f64], one: &Strip, two: &Strip) -> bool {
-    let columns = view.column(one.along[0].max(two.along[0]))..view.column(one.along[1].min(two.along[1])).max(1);
-    let border = if one.middle() < two.middle() {
-        [one.across[1], two.across[0]]
-    } else {
-        [two.across[1], one.across[0]]
-    };
-    let (low, high) = (border[0].min(border[1]) - 1e-6, border[0].max(border[1]) + 1e-6);
-    let lines: Vec<&Vec<bool>> = offsets
-        .iter()
-        .zip(sides)
-        .filter(|(o, _)| **o >= low && **o <= high)
-        .map(|(_, side)| &side.faces)
-        .collect();
-    let count = columns.len();
-    count > 0 && columns.filter(|&c| lines.iter().any(|line| line[c])).count() as f64 >= DENSE * count as f64
+/// The lines of one direction as sides of strips.
+struct Family<'a> {
+    view: &'a Turned,
+    parameters: &'a Parameters,
+    offsets: Vec<f64>,
+    sides: Vec<Side>,
+}
+
+/// A strip and the two lines that it lies between.
+struct Candidate {
+    strip: Strip,
+    sides: [usize; 2],
+}
+
+impl<'a> Family<'a> {
+    fn new(evidence: &Evidence<'a>, view: &'a Turned) -> Self {
+        Self {
+            view,
+            parameters: evidence.parameters,
+            offsets: view.lines.iter().map(|&n| evidence.lines.offsets[n]).collect(),
+            sides: view
+                .covered
+                .iter()
+                .map(|covered| Side::new(covered, view.cell))
+                .collect(),
+        }
+    }
+
+    /// The strips between every two lines that are a corridor's width apart.
+    fn candidates(&self) -> Vec<Candidate> {
+        let mut found = Vec::new();
+        for low in 0..self.offsets.len() {
+            for high in low + 1..self.offsets.len() {
+                let across = [self.offsets[low], self.offsets[high]];
+                let width = across[1] - across[0];
+                if width > self.parameters.labels_max_width {
+                    break;
+                }
+                if width >= self.parameters.labels_min_width {
+                    let sides = [low, high];
+                    let strips = self.strips(&self.columns(sides), 0..self.view.size[0], across);
+                    found.extend(strips.into_iter().map(|strip| Candidate { strip, sides }));
+                }
+            }
+        }
+        found
+    }
+
+    /// What every column between two lines holds.
+    fn columns(&self, [low, high]: [usize; 2]) -> Vec<Column> {
+        let across = [self.offsets[low], self.offsets[high]];
+        let width = across[1] - across[0];
+        let inner = INNER.min(0.25 * width);
+        let parts: Vec<&Side> = (low + 1..high)
+            .filter(|&n| self.offsets[n] - across[0] > inner && across[1] - self.offsets[n] > inner)
+            .map(|n| &self.sides[n])
+            .collect();
+        let sides = [&self.sides[low], &self.sides[high]];
+        let margin = MARGIN.min(0.2 * width);
+        let beyond = [
+            [across[0] - BESIDE.1, across[0] - BESIDE.0],
+            [across[1] + BESIDE.0, across[1] + BESIDE.1],
+        ];
+        let view = self.view;
+        let holds = |n: usize, c: usize| sides[n].walls[c] || view.blocked(c, beyond[n][0], beyond[n][1]) > BEYOND;
+        (0..view.size[0])
+            .map(|c| Column {
+                blocked: view.blocked(c, across[0] + margin, across[1] - margin),
+                parted: parts.iter().any(|part| part.faces[c]),
+                walled: holds(0, c) && holds(1, c),
+                near: sides.iter().any(|side| side.near[c]),
+                faces: sides.iter().map(|side| u8::from(side.faces[c])).sum(),
+            })
+            .collect()
+    }
+
+    /// The columns of a strip.
+    fn range(&self, strip: &Strip) -> (usize, usize) {
+        let half = self.view.cell / 2.0;
+        (
+            self.view.column(strip.along[0] + half),
+            self.view.column(strip.along[1] - half) + 1,
+        )
+    }
+
+    /// What stronger rivals leave of a strip's columns.
+    fn left(&self, strip: &Strip, kept: &[Strip]) -> Vec<std::ops::Range<usize>> {
+        let (from, to) = self.range(strip);
+        let mut left = vec![(from, to)];
+        for rival in kept {
+            let shared = strip.across[1].min(rival.across[1]) - strip.across[0].max(rival.across[0]);
+            let beside = shared.abs() < INNER && !self.parts(strip, rival);
+            if shared > RIVAL * strip.width().min(rival.width()) || beside {
+                let cut = self.range(rival);
+                let pieces = left
+                    .into_iter()
+                    .flat_map(|(a, b)| [(a, b.min(cut.0)), (a.max(cut.1), b)]);
+                left = pieces.filter(|(a, b)| a < b).collect();
+            }
+        }
+        left.into_iter().map(|(a, b)| a..b).collect()
+    }
+
+    /// True when enough structure lies between two strips side by side to part them.
+    fn parts(&self, one: &Strip, two: &Strip) -> bool {
+        let (below, above) = if one.middle() < two.middle() {
+            (one, two)
+        } else {
+            (two, one)
+        };
+        let border = [below.across[1], above.across[0]];
+        let (low, high) = (border[0].min(border[1]) - 1e-6, border[0].max(border[1]) + 1e-6);
+        let between = self
+            .offsets
+            .iter()
+            .zip(&self.sides)
+            .filter(|(o, _)| (low..=high).contains(*o));
+        let lines: Vec<&Side> = between.map(|(_, side)| side).collect();
+        let (p, q) = (self.range(one), self.range(two));
+        let (from, to) = (p.0.max(q.0), p.1.min(q.1));
+        let structure = (from..to).filter(|&c| lines.iter().any(|line| line.faces[c])).count();
+        from < to && structure as f64 >= DENSE * (to - from) as f64
+    }
+
+    /// The corridors among a strip's columns: the pieces in which what speaks for a corridor outweighs what speaks
+    /// against it, each as long as that holds.
+    fn strips(&self, columns: &[Column], range: std::ops::Range<usize>, across: [f64; 2]) -> Vec<Strip> {
+        let scores: Vec<f64> = columns[range.clone()].iter().map(|c| c.score()).collect();
+        let pieces = best_pieces(&scores)
+            .into_iter()
+            .map(|(from, to)| (range.start + from, range.start + to));
+        let view = self.view;
+        let strip = |(from, to): (usize, usize)| Strip {
+            direction: view.direction,
+            along: [view.along(from), view.along(to)],
+            across,
+            score: scores[from - range.start..to - range.start].iter().sum::<f64>() * view.cell,
+        };
+        pieces
+            .filter(|&(from, to)| self.is_corridor(&columns[from..to], across[1] - across[0]))
+            .map(strip)
+            .collect()
+    }
+
+    /// Long enough, walled enough, and walled by more than posts.
+    fn is_corridor(&self, columns: &[Column], width: f64) -> bool {
+        let count = |is: &dyn Fn(&Column) -> bool| columns.iter().filter(|c| is(c)).count() as f64;
+        let near = count(&|c| c.walled && c.near);
+        let faced = |least: u8| count(&|c| c.walled && c.faces >= least);
+        let length = columns.len() as f64 * self.view.cell;
+        let structured = if length >= LONG * width {
+            faced(1) >= FACED_LONG * near
+        } else {
+            faced(1) >= FACED * near && (faced(2) >= FACED_TWICE * near || faced(1) >= FACED_ONCE * near)
+        };
+        let walled = count(&|c| c.walled && c.blocked < NARROWED);
+        structured
+            && length >= self.parameters.labels_min_aspect * width
+            && walled >= LEAST_WALLED * columns.len() as f64
+    }
 }
 
 /// A line as the side of a strip, column by column.
@@ -237,60 +330,6 @@ impl Column {
             -OPEN
         }) - against
     }
-}
-
-fn columns(view: &Turned, sides: [&Side; 2], inner: &[&[bool]], across: [f64; 2]) -> Vec<Column> {
-    let margin = MARGIN.min(0.2 * (across[1] - across[0]));
-    let beyond = [
-        [across[0] - BESIDE.1, across[0] - BESIDE.0],
-        [across[1] + BESIDE.0, across[1] + BESIDE.1],
-    ];
-    (0..view.size[0])
-        .map(|c| Column {
-            blocked: view.blocked(c, across[0] + margin, across[1] - margin),
-            parted: inner.iter().any(|line| line[c]),
-            walled: (0..2).all(|n| sides[n].walls[c] || view.blocked(c, beyond[n][0], beyond[n][1]) > BEYOND),
-            near: sides.iter().any(|side| side.near[c]),
-            faces: sides.iter().map(|side| u8::from(side.faces[c])).sum(),
-        })
-        .collect()
-}
-
-/// The corridors among a strip's columns: the pieces in which what speaks for a corridor outweighs what speaks against
-/// it, each as long as that holds.
-fn strips(
-    view: &Turned,
-    columns: &[Column],
-    range: std::ops::Range<usize>,
-    across: [f64; 2],
-    aspect: f64,
-) -> Vec<Strip> {
-    let scores: Vec<f64> = columns[range.clone()].iter().map(|c| c.score()).collect();
-    let mut found = Vec::new();
-    for (from, to) in best_pieces(&scores) {
-        let piece = &columns[range.start + from..range.start + to];
-        let near = piece.iter().filter(|c| c.walled && c.near).count() as f64;
-        let faced = |least: u8| piece.iter().filter(|c| c.walled && c.faces >= least).count() as f64;
-        let walled = piece.iter().filter(|c| c.walled && c.blocked < 0.5).count() as f64 * view.cell;
-        let along = [view.along(range.start + from), view.along(range.start + to)];
-        let score = scores[from..to].iter().sum::<f64>() * view.cell;
-        let strip = Strip {
-            direction: view.direction,
-            along,
-            across,
-            walled,
-            score,
-        };
-        let structured = if strip.length() >= LONG * strip.width() {
-            faced(1) >= FACED_LONG * near
-        } else {
-            faced(1) >= FACED * near && (faced(2) >= FACED_TWICE * near || faced(1) >= FACED_ONCE * near)
-        };
-        if structured && strip.length() >= aspect * strip.width() && walled >= LEAST_WALLED * strip.length() {
-            found.push(strip);
-        }
-    }
-    found
 }
 
 /// All maximal pieces with the greatest sums (Ruzzo and Tompa 1999): from, to.

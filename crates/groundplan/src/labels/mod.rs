@@ -8,7 +8,6 @@ mod strips;
 mod turned;
 
 use crate::adjacency::Adjacency;
-use crate::arrangement::Arrangement;
 use crate::directions::Directions;
 use crate::gradients::Gradients;
 use crate::grid::Grid;
@@ -16,7 +15,6 @@ use crate::lines::Lines;
 use crate::occupancy::Occupancy;
 use crate::parameters::{Method, Parameters};
 use crate::subdivision::Subdivision;
-use crate::walls::Walls;
 
 /// Kinds of junctions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -84,10 +82,8 @@ pub(crate) struct Evidence<'a> {
     pub gradients: &'a Gradients,
     pub directions: &'a Directions,
     pub lines: &'a Lines,
-    pub arrangement: &'a Arrangement,
     pub subdivision: &'a Subdivision,
     pub occupancy: &'a Occupancy,
-    pub walls: &'a Walls,
     pub adjacency: &'a Adjacency,
     pub parameters: &'a Parameters,
     pub threads: usize,

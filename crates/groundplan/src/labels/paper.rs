@@ -121,5 +121,5 @@ fn corridors(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
 
 fn middle(subdivision: &crate::subdivision::Subdivision, edge: usize) -> [f64; 2] {
     let [p, q] = subdivision.edge_vertices[edge].map(|v| subdivision.vertices[v as usize]);
-    [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0]
+    [0, 1].map(|n| f64::midpoint(p[n], q[n]))
 }
