@@ -12,7 +12,7 @@ unexport MAKEFLAGS MFLAGS
 # Directories too, so that a file that was taken away counts as a change.
 rust := Cargo.toml Cargo.lock $(shell find crates -type d -o -name '*.rs' -o -name Cargo.toml)
 
-.PHONY: help demo test check bench format clean
+.PHONY: help demo test check bench fuzz docs format clean
 
 help: ## Show this list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 10
@@ -34,6 +34,14 @@ check: .venv/.built ## Check formatting, lints and types of both languages
 
 bench: .venv/.built ## Run every measurement in bench/
 	@set -e; for script in $(wildcard bench/*.py); do $(bin)/python "$$script"; done
+
+fuzz: ## Random arrangements for a minute; SECONDS=3600 for longer, SEED=n to start elsewhere
+	GROUNDPLAN_FUZZ_SECONDS=$(or $(SECONDS),60) $(if $(SEED),GROUNDPLAN_FUZZ_SEED=$(SEED)) \
+		cargo test --release --locked -p groundplan --test stress -- --ignored --nocapture
+
+docs: .venv/.built ## Make anew what the docs show: parameters, scores, the README's picture
+	$(bin)/groundplan parameters --markdown > docs/parameters.md
+	$(bin)/python docs/make.py
 
 format: .venv/.installed ## Format both languages, and mend what the linter can
 	cargo fmt --all

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from _program import Ran, call, files, hall, start, write_map, write_pgm
 from PIL import Image
@@ -100,18 +101,31 @@ def test_a_map_that_cannot_be_read_is_named_with_its_value(case: str, tmp_path: 
     assert files(tmp_path) == before and not (tmp_path / "out").exists()
 
 
+NOTHING: dict[str, tuple[npt.NDArray[np.uint8], str]] = {
+    "1x1": (hall()[:1, :1], "map.png is a single pixel: there is nothing to survey"),
+    "all unknown": (np.full_like(hall(), 205), "map.png: no pixel of the map is free: there is nothing to survey"),
+    "all occupied": (np.zeros_like(hall()), "map.png: no pixel of the map is free: there is nothing to survey"),
+}
+
+
+@pytest.mark.parametrize("case", NOTHING)
+def test_a_map_that_holds_nothing_is_refused(case: str, tmp_path: Path, capsys: Capture) -> None:
+    pixels, sentence = NOTHING[case]
+    Image.fromarray(pixels).save(tmp_path / "map.png")
+    ran = call(capsys, "survey", "map.png", *BARE, "-o", "out")
+    assert ran.code == 3
+    assert sentence in one_error(ran)
+    assert not (tmp_path / "out").exists()
+
+
 def sixteen_bit(path: Path) -> None:
     """A PNG of 16 bits."""
     Image.fromarray(hall().astype(np.uint16) * 257).save(path)
 
 
 POOR: dict[str, tuple[Callable[[Path], object], list[str]]] = {
-    "1x1": (lambda path: Image.fromarray(hall()[:1, :1]).save(path), ["few-edges"]),
-    "all unknown": (
-        lambda path: Image.fromarray(np.full_like(hall(), 205)).save(path),
-        ["no-free-space", "no-occupied"],
-    ),
-    "all occupied": (lambda path: Image.fromarray(np.zeros_like(hall())).save(path), ["no-free-space"]),
+    "one row": (lambda path: Image.fromarray(hall()[60:61]).save(path), ["few-edges"]),
+    "all free": (lambda path: Image.fromarray(np.full_like(hall(), 254)).save(path), ["no-occupied", "few-edges"]),
     "16 bit": (sixteen_bit, ["sixteen-bit"]),
     "RGBA": (lambda path: Image.fromarray(hall()).convert("RGBA").save(path), []),
     "palette": (lambda path: Image.fromarray(hall()).convert("P").save(path), []),

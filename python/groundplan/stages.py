@@ -115,7 +115,7 @@ class Radiogram(Stage):
     @property
     def offsets(self) -> Floats:
         """Offset of each value, metres."""
-        return self.start + self.step * np.arange(len(self.values))
+        return self.start + self.step * np.arange(len(self.values), dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +165,8 @@ class Lines(Stage):
     def of(cls, directions: npt.ArrayLike, offsets: npt.ArrayLike) -> Lines:
         """Lines of your own: the index of the direction and the offset in metres of each."""
         own = np.atleast_1d(np.asarray(offsets, dtype=np.float64))
-        return cls(np.atleast_1d(np.asarray(directions, dtype=np.uint32)), own, np.ones(len(own)), np.zeros(len(own)), 0.0)
+        families = np.atleast_1d(np.asarray(directions, dtype=np.uint32))
+        return cls(families, own, np.ones(len(own)), np.zeros(len(own)), 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +203,8 @@ class Subdivision(Stage):
 
     def polygon(self, face: int) -> Floats:
         """Vertices of a face, (N, 2), counter-clockwise."""
-        return self.vertices[self.face_vertices[self.face_offsets[face] : self.face_offsets[face + 1]]]
+        ring: Floats = self.vertices[self.face_vertices[self.face_offsets[face] : self.face_offsets[face + 1]]]
+        return ring
 
     def problems(self) -> list[str]:
         """Every broken invariant, as sentences; an empty list when all hold."""
@@ -316,8 +318,10 @@ def find_gradients(map: Map, *, threads: int | None = None, **parameters: Any) -
 
 
 def find_directions(map: Map, gradients: Gradients | None = None, **parameters: Any) -> Directions:
-    """II-A: the dominant directions, found in number and angle unless ``directions_count`` or
-    ``directions_angles_deg`` are given."""
+    """II-A: the dominant directions.
+
+    Their number and angles are found unless ``directions_count`` or ``directions_angles_deg`` are given.
+    """
     gradients = gradients or find_gradients(map, **parameters)
     return made(Directions, _core.find_directions(layout(map), record(gradients), named(parameters)))
 

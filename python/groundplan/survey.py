@@ -184,7 +184,9 @@ class Survey(Stage):
             name = tree.get("format") if isinstance(tree, dict) else None
             raise FormatError("survey.format", f"the format is {name!r} and not {FORMAT!r}")
         if tree.get("version") != VERSION:
-            raise FormatError("survey.version", f"version {tree.get('version')!r} of the format is not known, {VERSION} is")
+            raise FormatError(
+                "survey.version", f"version {tree.get('version')!r} of the format is not known, {VERSION} is"
+            )
         try:
             return cls._from_tree(tree)
         except (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError) as fault:
@@ -271,11 +273,16 @@ class Survey(Stage):
         )
 
     def to_networkx(self) -> networkx.Graph[int]:
-        """The adjacency graph: a node for each face, with its centre, area, occupancy and state, and an edge for each
-        link, with its edge's id and ``connected``. Two faces meet in one edge at most. Needs networkx."""
+        """The adjacency graph: faces as nodes, links as edges. Needs networkx.
+
+        A node has its ``centre``, ``area``, ``occupancy`` and ``state``, an edge the ``edge`` that it crosses and
+        whether it is ``connected``. Two faces meet in one edge at most.
+        """
         nx = needed("networkx", "graph")
         graph = nx.Graph()
-        for face, (centre, area) in enumerate(zip(self.subdivision.centres.tolist(), self.subdivision.areas, strict=True)):
+        for face, (centre, area) in enumerate(
+            zip(self.subdivision.centres.tolist(), self.subdivision.areas, strict=True)
+        ):
             graph.add_node(
                 face,
                 centre=tuple(centre),
@@ -284,13 +291,17 @@ class Survey(Stage):
                 state=STATES[self.occupancy.states[face]],
             )
         dual = self.adjacency
-        for (a, b), edge, connected in zip(dual.faces.tolist(), dual.edges.tolist(), dual.connected.tolist(), strict=True):
+        for (a, b), edge, connected in zip(
+            dual.faces.tolist(), dual.edges.tolist(), dual.connected.tolist(), strict=True
+        ):
             graph.add_edge(a, b, edge=edge, connected=connected)
         return graph
 
     def to_shapely(self) -> dict[str, npt.NDArray[np.object_]]:
-        """Geometries in the map frame, in the order of their ids: ``faces`` and ``labels`` (polygons), ``edges`` and
-        ``walls`` (line strings), ``vertices`` (points). Needs shapely."""
+        """Geometries in the map frame, in the order of their ids. Needs shapely.
+
+        ``faces`` and ``labels`` are polygons, ``edges`` and ``walls`` line strings, ``vertices`` points.
+        """
         shapely = needed("shapely", "geometry")
         cut = self.subdivision
         rings = shapely.linearrings(

@@ -126,6 +126,7 @@ def run(arguments: argparse.Namespace) -> None:
     name = Path(arguments.map).name
     with terminal.status(arguments.quiet) as status:
         map = read_map(arguments.map, arguments, resolution=arguments.resolution, origin=origin)
+        refuse_nothing(map, name)
         found = terminal.working(
             status, f"surveying {name}", lambda: groundplan.survey(map, threads=arguments.threads, **chosen)
         )
@@ -143,6 +144,24 @@ def run(arguments: argparse.Namespace) -> None:
             terminal.say("warning", f"{warning.message} [{warning.code}]")
         for place in written:
             terminal.say("wrote", place)
+
+
+def refuse_nothing(map: Map, name: str) -> None:
+    """A map in which no robot can stand is no map to a person, though the method would give it one face.
+
+    Raises
+    ------
+    MapError
+        ``map.one-pixel``, ``map.no-free-space``.
+    """
+    from groundplan._errors import MapError
+
+    if map.width * map.height == 1:
+        raise MapError("map.one-pixel", f"{name} is a single pixel: there is nothing to survey")
+    for warning in map.warnings:
+        if warning.code == "no-free-space":
+            hint = "--free-thresh, --occupied-thresh and --unknown say what the greys mean"
+            raise MapError("map.no-free-space", f"{name}: {warning.message}: there is nothing to survey", hint)
 
 
 def printable(path: str) -> str:

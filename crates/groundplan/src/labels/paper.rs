@@ -72,11 +72,7 @@ fn corridors(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
                 .get(subdivision.edge_lines[e] as usize)
                 .copied()
         };
-        let across = heading(one)?;
-        let open = subdivision.length(one).max(subdivision.length(two));
-        let apart = distance(middle(subdivision, one), middle(subdivision, two));
-        // "Long sides": the closed ones are at least as long as the open ones.
-        (heading(two)? == across && apart >= open).then_some([one, two])
+        (heading(two)? == heading(one)?).then_some([one, two])
     };
     let ends: Vec<Option<[usize; 2]>> = (0..nodes.len()).map(matches).collect();
     let mut taken = vec![false; nodes.len()];
@@ -108,11 +104,16 @@ fn corridors(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
         let axis = [middle(subdivision, first), middle(subdivision, last)].map(|p| p.map(tidy));
         let area: f64 = faces.iter().map(|&f| subdivision.areas[f as usize]).sum();
         let length = distance(axis[0], axis[1]);
+        // "Long sides": the lines of the other directions may cut a corridor into faces that are wider than long, so
+        // it is judged whole.
+        if length * length < area {
+            continue;
+        }
         labels.push(Label::Corridor {
             polygon: outline::polygon(subdivision, &faces),
             faces,
             axis,
-            width: tidy(if length > 0.0 { area / length } else { 0.0 }),
+            width: tidy(area / length),
             name: format!("A{:02}", labels.len() + 1),
         });
     }

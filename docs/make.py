@@ -1,0 +1,43 @@
+"""Make anew what the docs show: the README's picture and the table of scores. Run by `make docs`."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import groundplan
+from groundplan.figures import draw_survey
+
+DOCS = Path(__file__).parent
+PROGRAM = Path(sysconfig.get_path("scripts")) / "groundplan"
+BEGIN, END = "<!-- the table begins -->", "<!-- the table ends -->"
+
+
+def picture() -> None:
+    """The survey of the example, small enough for a README."""
+    from PIL import Image
+
+    map = groundplan.read(DOCS.parent / "examples" / "warehouse.yaml")
+    place = draw_survey(groundplan.survey(map), map, DOCS / "survey.png")
+    with Image.open(place) as drawn:
+        drawn.thumbnail((1200, 1200))
+        drawn.convert("RGB").quantize(128).save(place, optimize=True)
+
+
+def scores() -> None:
+    """The suite's table into docs/accuracy.md."""
+    table = subprocess.run(
+        [PROGRAM, "evaluate", "--suite", "warehouses"], check=True, stdout=subprocess.PIPE, text=True
+    ).stdout
+    page = DOCS / "accuracy.md"
+    before, _, rest = page.read_text(encoding="utf-8").partition(BEGIN)
+    after = rest.partition(END)[2]
+    page.write_text(f"{before}{BEGIN}\n\n```\n{table}```\n\n{END}{after}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    picture()
+    scores()
+    sys.stderr.write("wrote docs/survey.png and docs/accuracy.md\n")
