@@ -37,7 +37,7 @@ bench: .venv/.built ## Run every measurement in bench/
 
 fuzz: ## Random arrangements for a minute; SECONDS=3600 for longer, SEED=n to start elsewhere
 	GROUNDPLAN_FUZZ_SECONDS=$(or $(SECONDS),60) $(if $(SEED),GROUNDPLAN_FUZZ_SEED=$(SEED)) \
-		cargo test --release --locked -p groundplan --test stress -- --ignored --nocapture
+		cargo test --locked -p groundplan --test stress -- --ignored --nocapture
 
 docs: .venv/.built ## Make anew what the docs show: parameters, scores, the README's picture
 	$(bin)/groundplan parameters --markdown > docs/parameters.md

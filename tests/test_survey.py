@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections import Counter
 from typing import Any
 
@@ -14,7 +15,7 @@ import groundplan
 from groundplan import Directions, GroundplanError, Lines, MapError, ParameterError
 
 #: Maps with labels that a hundredth of a degree decides.
-CLOSE = frozenset({"pillars", "triangle_grid", "all_occupied", "diagonal_only", "turned_warehouse"})
+CLOSE = frozenset({"pillars", "triangle_grid", "all_occupied", "diagonal_only", "skewed"})
 
 
 def survey(name: str, **given: Any) -> groundplan.Survey:
@@ -202,3 +203,20 @@ def test_labels_name_faces_and_labels_that_exist() -> None:
             for label in found.labels:
                 assert all(0 <= face < len(found.subdivision.areas) for face in label.get("faces", []))
                 assert all(found.labels[n]["kind"] == "corridor" for n in label.get("corridors", []))
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"directions": [0, 7]}, "a line names a direction that there is not"),
+        ({"offsets": [1.0, float("nan")]}, "an offset of the lines is not finite"),
+        ({"offsets": [1.0]}, "the lines' arrays differ in length"),
+    ],
+)
+def test_lines_that_do_not_fit_are_refused(change: dict[str, Any], sentence: str) -> None:
+    good = Lines.of([0, 0], [1.0, 2.0])
+    kinds = {"offsets": np.float64, "directions": np.uint32}
+    arrays: dict[str, Any] = {name: np.array(values, kinds[name]) for name, values in change.items()}
+    lines = dataclasses.replace(good, **arrays)
+    with pytest.raises(ValueError, match=sentence):
+        survey("single_room", directions=Directions.of([0.0]), lines=lines)

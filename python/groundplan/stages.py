@@ -88,7 +88,7 @@ class Directions(Stage):
 
     @classmethod
     def of(cls, angles: npt.ArrayLike) -> Directions:
-        """Directions of your own, angles in radians."""
+        """Directions of your own, angles in radians; they are brought into [-pi/2, pi/2)."""
         own = np.atleast_1d(np.asarray(angles, dtype=np.float64))
         return cls((own + np.pi / 2) % np.pi - np.pi / 2, np.ones(len(own)), np.zeros(0), 1.0)
 
@@ -163,7 +163,11 @@ class Lines(Stage):
 
     @classmethod
     def of(cls, directions: npt.ArrayLike, offsets: npt.ArrayLike) -> Lines:
-        """Lines of your own: the index of the direction and the offset in metres of each."""
+        """Lines of your own: the index of the direction and the offset in metres of each.
+
+        Offsets are along the normal (-sin, cos) of the direction's angle in [-pi/2, pi/2): an upright line at x has
+        the angle -pi/2, the normal (1, 0) and so the offset x.
+        """
         own = np.atleast_1d(np.asarray(offsets, dtype=np.float64))
         families = np.atleast_1d(np.asarray(directions, dtype=np.uint32))
         return cls(families, own, np.ones(len(own)), np.zeros(len(own)), 0.0)

@@ -78,8 +78,7 @@ impl<'py> Named<'py> {
 }
 
 fn item<'py>(dict: &Bound<'py, PyDict>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-    dict.get_item(name)?
-        .ok_or_else(|| PyValueError::new_err(format!("{name} is missing")))
+    dict.get_item(name)?.ok_or_else(|| PyValueError::new_err(format!("{name} is missing")))
 }
 
 fn number<'py, T: FromPyObjectOwned<'py>>(dict: &Bound<'py, PyDict>, name: &str) -> PyResult<T> {
@@ -97,12 +96,32 @@ fn pairs<T: Element + Copy>(dict: &Bound<'_, PyDict>, name: &str) -> PyResult<Ve
     let array = item.cast::<PyArray2<T>>()?.readonly();
     let array = array.as_array();
     if array.ncols() != 2 {
-        return Err(PyValueError::new_err(format!(
-            "{name} has {} columns and not 2",
-            array.ncols()
-        )));
+        return Err(PyValueError::new_err(format!("{name} has {} columns and not 2", array.ncols())));
     }
     Ok(array.rows().into_iter().map(|row| [row[0], row[1]]).collect())
+}
+
+/// Arrays from outside must fit one another: the method trusts what its own stages made.
+fn demand(fits: bool, sentence: &str) -> PyResult<()> {
+    if fits { Ok(()) } else { Err(PyValueError::new_err(sentence.to_owned())) }
+}
+
+/// Lines and the directions that they name.
+pub fn demand_directions(lines: &Lines, directions: &Directions) -> PyResult<()> {
+    let known = |&d: &u32| (d as usize) < directions.angles.len();
+    demand(lines.directions.iter().all(known), "a line names a direction that there is not")
+}
+
+/// Gradients and the grid that they lie on.
+pub fn demand_grid(gradients: &Gradients, frame: &Frame) -> PyResult<()> {
+    let inside = |p: &[u32; 2]| (p[0] as usize) < frame.width && (p[1] as usize) < frame.height;
+    demand(gradients.pixels.iter().all(inside), "the gradients have pixels outside this map")
+}
+
+/// Measures and the subdivision that they are of.
+pub fn demand_subdivision(subdivision: &Subdivision, faces: usize, edges: usize) -> PyResult<()> {
+    let fits = faces == subdivision.faces() && edges == subdivision.edge_vertices.len();
+    demand(fits, "the faces or edges are not those of this subdivision")
 }
 
 /// Ids as Python has them: none is -1.
@@ -140,11 +159,7 @@ fn to_value(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
         }
     }
     let message = format!("{name} cannot be {}", value.repr()?);
-    let fault = ParameterError {
-        code: "parameter.range",
-        message,
-        hint: "a number, a word or a list".to_owned(),
-    };
+    let fault = ParameterError { code: "parameter.range", message, hint: "a number, a word or a list".to_owned() };
     Err(raise(value.py(), &fault))
 }
 
@@ -175,11 +190,7 @@ pub fn values<'py>(py: Python<'py>, parameters: &Parameters) -> PyResult<Bound<'
 }
 
 pub fn table_row<'py>(py: Python<'py>, row: &Parameter) -> PyResult<Bound<'py, PyDict>> {
-    let words = if let Range::Word(words) = row.range {
-        words.to_vec()
-    } else {
-        Vec::new()
-    };
+    let words = if let Range::Word(words) = row.range { words.to_vec() } else { Vec::new() };
     Ok(Named::new(py)
         .with("name", row.name)?
         .with("unit", row.unit)?
@@ -200,11 +211,15 @@ pub fn from_gradients<'py>(py: Python<'py>, made: &Gradients) -> PyResult<Bound<
 }
 
 pub fn gradients(dict: &Bound<'_, PyDict>) -> PyResult<Gradients> {
-    Ok(Gradients {
+    let made = Gradients {
         pixels: pairs(dict, "pixels")?,
         angles: list(dict, "angles")?,
         magnitudes: list(dict, "magnitudes")?,
-    })
+    };
+    let count = made.pixels.len();
+    demand(made.angles.len() == count && made.magnitudes.len() == count, "the gradients' arrays differ in length")?;
+    demand(made.angles.iter().all(|a| a.is_finite()), "an angle of the gradients is not finite")?;
+    Ok(made)
 }
 
 pub fn from_directions<'py>(py: Python<'py>, made: &Directions) -> PyResult<Bound<'py, PyDict>> {
@@ -217,12 +232,15 @@ pub fn from_directions<'py>(py: Python<'py>, made: &Directions) -> PyResult<Boun
 }
 
 pub fn directions(dict: &Bound<'_, PyDict>) -> PyResult<Directions> {
-    Ok(Directions {
+    let made = Directions {
         angles: list(dict, "angles")?,
         weights: list(dict, "weights")?,
         histogram: list(dict, "histogram")?,
         explained: number(dict, "explained")?,
-    })
+    };
+    demand(made.angles.len() == made.weights.len(), "the directions' arrays differ in length")?;
+    demand(made.angles.iter().all(|a| a.is_finite()), "an angle of the directions is not finite")?;
+    Ok(made)
 }
 
 pub fn from_radiograms<'py>(py: Python<'py>, made: &[Radiogram]) -> PyResult<Vec<Bound<'py, PyDict>>> {
@@ -249,10 +267,7 @@ pub fn radiogram(dict: &Bound<'_, PyDict>) -> PyResult<Radiogram> {
 pub fn from_response<'py>(py: Python<'py>, made: &Response, step: f64) -> PyResult<Bound<'py, PyDict>> {
     Ok(Named::new(py)
         .list("widths", made.widths.iter().map(|w| w * step).collect())?
-        .with(
-            "rows",
-            PyArray2::from_vec2(py, &made.rows).map_err(|e| PyValueError::new_err(e.to_string()))?,
-        )?
+        .with("rows", PyArray2::from_vec2(py, &made.rows).map_err(|e| PyValueError::new_err(e.to_string()))?)?
         .done())
 }
 
@@ -267,21 +282,23 @@ pub fn from_lines<'py>(py: Python<'py>, made: &Lines) -> PyResult<Bound<'py, PyD
 }
 
 pub fn lines(dict: &Bound<'_, PyDict>) -> PyResult<Lines> {
-    Ok(Lines {
+    let made = Lines {
         directions: list(dict, "directions")?,
         offsets: list(dict, "offsets")?,
         amplitudes: list(dict, "amplitudes")?,
         widths: list(dict, "widths")?,
         min_amplitude: number(dict, "min_amplitude")?,
-    })
+    };
+    let count = made.offsets.len();
+    let same = [made.directions.len(), made.amplitudes.len(), made.widths.len()].iter().all(|n| *n == count);
+    demand(same, "the lines' arrays differ in length")?;
+    demand(made.offsets.iter().all(|o| o.is_finite()), "an offset of the lines is not finite")?;
+    Ok(made)
 }
 
 pub fn from_subdivision<'py>(py: Python<'py>, made: &Subdivision) -> PyResult<Bound<'py, PyDict>> {
-    let sides: Vec<[i32; 2]> = made
-        .edge_faces
-        .iter()
-        .map(|f| f.map(|f| if f == NONE { -1 } else { f as i32 }))
-        .collect();
+    let sides: Vec<[i32; 2]> =
+        made.edge_faces.iter().map(|f| f.map(|f| if f == NONE { -1 } else { f as i32 })).collect();
     Ok(Named::new(py)
         .pairs("vertices", &made.vertices)?
         .pairs("edge_vertices", &made.edge_vertices)?
@@ -302,10 +319,7 @@ pub fn subdivision(dict: &Bound<'_, PyDict>) -> PyResult<Subdivision> {
         vertices: pairs(dict, "vertices")?,
         edge_vertices: pairs(dict, "edge_vertices")?,
         edge_lines: unsigned(&list::<i32>(dict, "edge_lines")?),
-        edge_faces: sides
-            .into_iter()
-            .map(|f| f.map(|f| u32::try_from(f).unwrap_or(NONE)))
-            .collect(),
+        edge_faces: sides.into_iter().map(|f| f.map(|f| u32::try_from(f).unwrap_or(NONE))).collect(),
         face_vertices: list(dict, "face_vertices")?,
         face_edges: list(dict, "face_edges")?,
         face_offsets: list(dict, "face_offsets")?,
@@ -350,10 +364,7 @@ pub fn from_walls<'py>(py: Python<'py>, made: &Walls) -> PyResult<Bound<'py, PyD
         .list("disparity", made.disparity.clone())?
         .pairs("points", &ends)?
         .list("lines", made.walls.iter().map(|w| w.line).collect())?
-        .list(
-            "freestanding",
-            made.walls.iter().map(|w| w.kind == WallKind::Freestanding).collect(),
-        )?
+        .list("freestanding", made.walls.iter().map(|w| w.kind == WallKind::Freestanding).collect())?
         .done())
 }
 
@@ -364,11 +375,7 @@ pub fn walls(dict: &Bound<'_, PyDict>) -> PyResult<Walls> {
     let wall = |((ends, &line), &free): ((&[[f64; 2]], &u32), &bool)| Wall {
         points: [ends[0], ends[1]],
         line,
-        kind: if free {
-            WallKind::Freestanding
-        } else {
-            WallKind::Separating
-        },
+        kind: if free { WallKind::Freestanding } else { WallKind::Separating },
     };
     Ok(Walls {
         cogent: list(dict, "cogent")?,
@@ -390,26 +397,14 @@ pub fn from_labels<'py>(py: Python<'py>, made: &[Label]) -> PyResult<Vec<Bound<'
     let convert = |label: &Label| {
         let named = Named::new(py);
         let named = match label {
-            Label::Corridor {
-                faces,
-                polygon,
-                axis,
-                width,
-                name,
-            } => named
+            Label::Corridor { faces, polygon, axis, width, name } => named
                 .with("kind", "corridor")?
                 .with("faces", faces)?
                 .with("polygon", polygon)?
                 .with("axis", axis)?
                 .with("width", *width)?
                 .with("name", name)?,
-            Label::Junction {
-                kind,
-                faces,
-                polygon,
-                at,
-                corridors,
-            } => named
+            Label::Junction { kind, faces, polygon, at, corridors } => named
                 .with("kind", "junction")?
                 .with("type", kind.name())?
                 .with("faces", faces)?

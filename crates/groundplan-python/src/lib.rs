@@ -8,6 +8,7 @@ mod convert;
 #[pyo3::pymodule]
 mod _core {
     use crate::convert::{self, Layout, Named};
+    use groundplan::directions::Directions;
     use groundplan::{Given, TABLE, adjacency, arrangement, directions, gradients, lines, occupancy, radiograms};
     use groundplan::{subdivision::Subdivision, walls};
     use pyo3::prelude::*;
@@ -47,6 +48,10 @@ mod _core {
             directions: directions.map(convert::directions).transpose()?,
             lines: lines.map(convert::lines).transpose()?,
         };
+        if let Some(lines) = &given.lines {
+            let none = Directions::default();
+            convert::demand_directions(lines, given.directions.as_ref().unwrap_or(&none))?;
+        }
         let made = layout.with_grid(py, |grid| groundplan::survey(grid, &parameters, given, threads))?;
         Ok(Named::new(py)
             .with("directions", convert::from_directions(py, &made.directions)?)?
@@ -57,13 +62,7 @@ mod _core {
             .with("walls", convert::from_walls(py, &made.walls)?)?
             .with("adjacency", convert::from_adjacency(py, &made.adjacency)?)?
             .with("labels", convert::from_labels(py, &made.labels)?)?
-            .with(
-                "warnings",
-                made.warnings
-                    .into_iter()
-                    .map(|w| (w.code, w.message))
-                    .collect::<Vec<_>>(),
-            )?
+            .with("warnings", made.warnings.into_iter().map(|w| (w.code, w.message)).collect::<Vec<_>>())?
             .done())
     }
 
@@ -88,11 +87,9 @@ mod _core {
         gradients: &Bound<'py, PyDict>,
         parameters: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let made = directions::find_directions(
-            &layout.frame(),
-            &convert::gradients(gradients)?,
-            &convert::parameters(parameters)?,
-        );
+        let gradients = convert::gradients(gradients)?;
+        convert::demand_grid(&gradients, &layout.frame())?;
+        let made = directions::find_directions(&layout.frame(), &gradients, &convert::parameters(parameters)?);
         convert::from_directions(py, &made)
     }
 
@@ -106,6 +103,7 @@ mod _core {
         parameters: &Bound<'py, PyDict>,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let (gradients, directions) = (convert::gradients(gradients)?, convert::directions(directions)?);
+        convert::demand_grid(&gradients, &layout.frame())?;
         let parameters = convert::parameters(parameters)?;
         convert::from_radiograms(
             py,
@@ -132,10 +130,7 @@ mod _core {
         radiograms: Vec<Bound<'py, PyDict>>,
         parameters: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let radiograms = radiograms
-            .iter()
-            .map(convert::radiogram)
-            .collect::<PyResult<Vec<_>>>()?;
+        let radiograms = radiograms.iter().map(convert::radiogram).collect::<PyResult<Vec<_>>>()?;
         convert::from_lines(py, &lines::find_lines(&radiograms, &convert::parameters(parameters)?))
     }
 
@@ -148,6 +143,7 @@ mod _core {
         lines: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (directions, lines) = (convert::directions(directions)?, convert::lines(lines)?);
+        convert::demand_directions(&lines, &directions)?;
         let frame = layout.frame();
         let made = arrangement::arrange(&frame, &directions.angles, &lines);
         convert::from_subdivision(py, &Subdivision::new(&frame, &made))
@@ -171,18 +167,12 @@ mod _core {
         threads: usize,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (directions, lines) = (convert::directions(directions)?, convert::lines(lines)?);
+        convert::demand_directions(&lines, &directions)?;
         let (gradients, parameters) = (convert::gradients(gradients)?, convert::parameters(parameters)?);
+        convert::demand_grid(&gradients, &layout.frame())?;
         let made = layout.with_grid(py, |grid| {
             let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines);
-            occupancy::find_occupancy(
-                grid,
-                &arrangement,
-                &directions,
-                &lines,
-                &gradients,
-                &parameters,
-                threads,
-            )
+            occupancy::find_occupancy(grid, &arrangement, &directions, &lines, &gradients, &parameters, threads)
         })?;
         convert::from_occupancy(py, &made)
     }
@@ -196,10 +186,9 @@ mod _core {
         parameters: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (subdivision, occupancy) = (convert::subdivision(subdivision)?, convert::occupancy(occupancy)?);
-        convert::from_walls(
-            py,
-            &walls::find_walls(&subdivision, &occupancy, &convert::parameters(parameters)?),
-        )
+        let states = occupancy.states.len().min(occupancy.faces.len());
+        convert::demand_subdivision(&subdivision, states, occupancy.edges.len())?;
+        convert::from_walls(py, &walls::find_walls(&subdivision, &occupancy, &convert::parameters(parameters)?))
     }
 
     /// II-D, II-E: the dual.
@@ -210,6 +199,7 @@ mod _core {
         walls: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (subdivision, walls) = (convert::subdivision(subdivision)?, convert::walls(walls)?);
+        convert::demand_subdivision(&subdivision, subdivision.faces(), walls.cogent.len())?;
         convert::from_adjacency(py, &adjacency::find_adjacency(&subdivision, &walls))
     }
 }

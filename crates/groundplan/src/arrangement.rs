@@ -37,15 +37,7 @@ struct Point {
 
 impl Point {
     fn new(x: i128, y: i128, over: i128) -> Self {
-        if over < 0 {
-            Self {
-                x: -x,
-                y: -y,
-                over: -over,
-            }
-        } else {
-            Self { x, y, over }
-        }
+        if over < 0 { Self { x: -x, y: -y, over: -over } } else { Self { x, y, over } }
     }
 
     fn to_floats(self) -> [f64; 2] {
@@ -97,11 +89,7 @@ pub fn arrange(frame: &Frame, angles: &[f64], lines: &Lines) -> Arrangement {
     let lattice = |(&direction, &offset): (&u32, &f64)| {
         let [a, b] = normals[direction as usize];
         let c = frame.offset_to_grid(angles[direction as usize], offset) * scale;
-        LatticeLine {
-            a,
-            b,
-            c: c.round() as i64,
-        }
+        LatticeLine { a, b, c: c.round() as i64 }
     };
     let lattice: Vec<LatticeLine> = lines.directions.iter().zip(&lines.offsets).map(lattice).collect();
     Builder::new(frame.width as i64, frame.height as i64, lattice).build()
@@ -110,10 +98,7 @@ pub fn arrange(frame: &Frame, angles: &[f64], lines: &Lines) -> Arrangement {
 /// Normal of a direction on the lattice. The y part is never negative, nor are both zero.
 fn normal(angle: f64) -> [i64; 2] {
     let scale = (1u64 << BITS) as f64;
-    [
-        (-libm::sin(angle) * scale).round() as i64,
-        (libm::cos(angle) * scale).round() as i64,
-    ]
+    [(-libm::sin(angle) * scale).round() as i64, (libm::cos(angle) * scale).round() as i64]
 }
 
 /// Lines of one normal, in the order of their offsets.
@@ -168,12 +153,7 @@ impl Builder {
         for n in order {
             let line = lines[n as usize];
             if families.last().is_none_or(|f| (f.a, f.b) != (line.a, line.b)) {
-                families.push(Family {
-                    a: line.a,
-                    b: line.b,
-                    members: Vec::new(),
-                    offsets: Vec::new(),
-                });
+                families.push(Family { a: line.a, b: line.b, members: Vec::new(), offsets: Vec::new() });
             }
             let Some(family) = families.last_mut() else { continue };
             if family.offsets.last() != Some(&line.c) {
@@ -199,10 +179,7 @@ impl Builder {
             for &n in &members {
                 builder.ends[n as usize] = builder.clip(builder.lines[n as usize]);
             }
-            let kept: Vec<u32> = members
-                .into_iter()
-                .filter(|&n| builder.ends[n as usize].is_some())
-                .collect();
+            let kept: Vec<u32> = members.into_iter().filter(|&n| builder.ends[n as usize].is_some()).collect();
             builder.families[f].offsets = kept.iter().map(|&n| builder.lines[n as usize].c).collect();
             builder.families[f].members = kept;
         }
@@ -215,14 +192,8 @@ impl Builder {
         let LatticeLine { a, b, c } = line;
         let (a, b, c) = (i128::from(a), i128::from(b), i128::from(c));
         let (width, height) = (i128::from(self.width), i128::from(self.height));
-        let at_x = |x: i128, side: u8| End {
-            side,
-            point: Point::new(x * b, c - a * x, b),
-        };
-        let at_y = |y: i128, side: u8| End {
-            side,
-            point: Point::new(c - b * y, y * a, a),
-        };
+        let at_x = |x: i128, side: u8| End { side, point: Point::new(x * b, c - a * x, b) };
+        let at_y = |y: i128, side: u8| End { side, point: Point::new(c - b * y, y * a, a) };
         if a == 0 {
             let inside = 0 < c * b.signum() && c.abs() < height * b.abs();
             return inside.then(|| [at_x(0, 3), at_x(width, 1)]);
@@ -233,11 +204,7 @@ impl Builder {
             let (low, high) = (at_y(0, 0), at_y(height, 2));
             return inside.then_some(if rising { [low, high] } else { [high, low] });
         }
-        let (enter_y, leave_y) = if rising {
-            (at_y(0, 0), at_y(height, 2))
-        } else {
-            (at_y(height, 2), at_y(0, 0))
-        };
+        let (enter_y, leave_y) = if rising { (at_y(0, 0), at_y(height, 2)) } else { (at_y(height, 2), at_y(0, 0)) };
         // A corner belongs to the side that starts there, going round counter-clockwise.
         let x_cmp = |end: &End, x: i128| end.point.x.cmp(&(x * end.point.over));
         let by_left_side = match x_cmp(&enter_y, 0) {
@@ -282,30 +249,18 @@ impl Builder {
     fn crossing(&self, one: u32, two: u32) -> Point {
         let (p, q) = (self.lines[one as usize], self.lines[two as usize]);
         let wide = |a: i64, b: i64, c: i64, d: i64| i128::from(a) * i128::from(b) - i128::from(c) * i128::from(d);
-        Point::new(
-            wide(p.c, q.b, q.c, p.b),
-            wide(p.a, q.c, q.a, p.c),
-            wide(p.a, q.b, q.a, p.b),
-        )
+        Point::new(wide(p.c, q.b, q.c, p.b), wide(p.a, q.c, q.a, p.c), wide(p.a, q.b, q.a, p.b))
     }
 
     /// Members of `family` that cross the open piece between the ends of a line.
     fn run(ends: &[End; 2], family: &Family) -> Run {
-        let value = |end: &End| {
-            (
-                i128::from(family.a) * end.point.x + i128::from(family.b) * end.point.y,
-                end.point.over,
-            )
-        };
+        let value =
+            |end: &End| (i128::from(family.a) * end.point.x + i128::from(family.b) * end.point.y, end.point.over);
         let (p, q) = (value(&ends[0]), value(&ends[1]));
         let (low, high) = if p.0 * q.1 <= q.0 * p.1 { (p, q) } else { (q, p) };
         let first = family.offsets.partition_point(|&c| i128::from(c) * low.1 <= low.0);
         let last = family.offsets.partition_point(|&c| i128::from(c) * high.1 < high.0);
-        Run {
-            first: first as u32,
-            count: last.saturating_sub(first) as u32,
-            vertex: 0,
-        }
+        Run { first: first as u32, count: last.saturating_sub(first) as u32, vertex: 0 }
     }
 
     fn build(mut self) -> Arrangement {
@@ -332,10 +287,8 @@ impl Builder {
         // Ends on the border, going round; those in one place are one vertex, corners among them.
         let mut border: Vec<(End, u32)> = Vec::new();
         let (w, h) = (i128::from(self.width), i128::from(self.height));
-        let corners = [(0, 0, 0), (1, w, 0), (2, w, h), (3, 0, h)].map(|(side, x, y)| End {
-            side,
-            point: Point::new(x, y, 1),
-        });
+        let corners =
+            [(0, 0, 0), (1, w, 0), (2, w, h), (3, 0, h)].map(|(side, x, y)| End { side, point: Point::new(x, y, 1) });
         for corner in corners {
             let id = self.add_vertex(corner.point);
             border.push((corner, id));
@@ -429,11 +382,7 @@ impl Builder {
             fp.total_cmp(&fq)
         } else {
             let (p, q) = (self.crossing(n, p.1), self.crossing(n, q.1));
-            if by_x {
-                (p.x * q.over).cmp(&(q.x * p.over))
-            } else {
-                (p.y * q.over).cmp(&(q.y * p.over))
-            }
+            if by_x { (p.x * q.over).cmp(&(q.x * p.over)) } else { (p.y * q.over).cmp(&(q.y * p.over)) }
         };
         if forwards { along } else { along.reverse() }
     }
@@ -455,10 +404,7 @@ impl Builder {
         self.vertices.truncate(kept as usize);
         self.rows_below.truncate(kept as usize);
 
-        let mut made = Arrangement {
-            lines: self.lines,
-            ..Arrangement::default()
-        };
+        let mut made = Arrangement { lines: self.lines, ..Arrangement::default() };
         let mut ranks: Vec<[u32; 2]> = Vec::new();
         let (line_ranks, border_ranks) = rank(&made.lines);
         for (n, chain) in chains.iter().enumerate() {
@@ -522,10 +468,7 @@ fn rank(lines: &[LatticeLine]) -> (Vec<[u32; 2]>, [u32; 4]) {
     all.sort_by(turn);
     all.dedup_by(|v, w| turn(v, w) == Ordering::Equal);
     let place = |v: &[i128; 2]| all.partition_point(|w| turn(w, v) == Ordering::Less) as u32;
-    (
-        lines.iter().map(|line| ways(line).map(|v| place(&v))).collect(),
-        border.map(|v| place(&v)),
-    )
+    (lines.iter().map(|line| ways(line).map(|v| place(&v))).collect(), border.map(|v| place(&v)))
 }
 
 impl Arrangement {

@@ -42,10 +42,7 @@ pub fn fold_bands<T: Send>(
     }
     let totals: Vec<T> = std::thread::scope(|scope| {
         let handles: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        handles
-            .into_iter()
-            .map(|h| h.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-            .collect()
+        handles.into_iter().map(|h| h.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
     });
     let mut totals = totals.into_iter();
     let mut sum = totals.next().unwrap_or_else(empty);

@@ -41,6 +41,8 @@ const SECOND: f64 = 0.04;
 const CLOSEST: f64 = 1e-6;
 /// Steps of the search for the sharpest radiogram: half range and step, degrees.
 const SEARCH: [(f64, f64); 3] = [(3.0, 0.25), (0.3, 0.05), (0.06, 0.01)];
+/// How often the search moves on, at most.
+const MOST_MOVES: usize = 2;
 /// A line shorter than this many pixels says nothing of a direction.
 const SHORTEST_PIXELS: f64 = 20.0;
 /// Half the window of the background that a line must stand out of, pixels.
@@ -65,13 +67,9 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
         Some(count) => found.truncate(count),
         None if given.is_some() => {}
         None => {
-            let (strong, weak): (Vec<_>, Vec<_>) = found
-                .into_iter()
-                .partition(|f| f.metres >= parameters.directions_min_weight * strongest);
-            found = strong
-                .into_iter()
-                .filter(|f| f.exceeds_chance(OTHERS_AMONG_CONTROLS))
-                .collect();
+            let (strong, weak): (Vec<_>, Vec<_>) =
+                found.into_iter().partition(|f| f.metres >= parameters.directions_min_weight * strongest);
+            found = strong.into_iter().filter(|f| f.exceeds_chance(OTHERS_AMONG_CONTROLS)).collect();
             // A ground plan has two directions, be it only by the ends of its racks.
             if found.len() == 1 {
                 let second = |f: &Candidate| f.metres >= SECOND * strongest && f.exceeds_chance(1);
@@ -83,16 +81,7 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
     let total = gradients.pixels.len() as f64 * frame.resolution;
     Directions {
         angles: found.iter().map(|f| tidy_angle(frame.angle_to_map(f.angle))).collect(),
-        weights: found
-            .iter()
-            .map(|f| {
-                if strongest > 0.0 {
-                    tidy(f.metres / strongest)
-                } else {
-                    0.0
-                }
-            })
-            .collect(),
+        weights: found.iter().map(|f| if strongest > 0.0 { tidy(f.metres / strongest) } else { 0.0 }).collect(),
         histogram: turned(&histogram, frame),
         explained: if total > 0.0 { tidy((sum / total).min(1.0)) } else { 0.0 },
     }
@@ -120,11 +109,7 @@ fn measure(frame: &Frame, rest: &mut Gradients, angles: &[f64], parameters: &Par
     for angle in angles.iter().map(|a| frame.angle_to_grid(a.to_radians())) {
         if found.iter().all(|other| angle_between(other.angle, angle) > CLOSEST) {
             let metres = take_aligned(frame, rest, angle, parameters);
-            found.push(Candidate {
-                angle,
-                metres,
-                beside: Default::default(),
-            });
+            found.push(Candidate { angle, metres, beside: Default::default() });
         }
     }
     found
@@ -137,20 +122,13 @@ fn search(frame: &Frame, rest: &mut Gradients, parameters: &Parameters) -> Vec<C
     let mut tried: Vec<f64> = Vec::new();
     while tried.len() < MOST_CANDIDATES {
         let candidates = candidates(&histogram(rest));
-        let fresh = |angle: &f64| {
-            tried
-                .iter()
-                .all(|other| angle_between(*other, *angle) >= separation / 2.0)
-        };
+        let fresh = |angle: &f64| tried.iter().all(|other| angle_between(*other, *angle) >= separation / 2.0);
         let Some(start) = candidates.into_iter().find(fresh) else {
             break;
         };
         let angle = sharpest(frame, rest, start, parameters);
         tried.push(start);
-        if found
-            .iter()
-            .all(|other| angle_between(other.angle, angle) >= separation)
-        {
+        if found.iter().all(|other| angle_between(other.angle, angle) >= separation) {
             let mut beside = CONTROLS_DEG.map(|turn| aligned(frame, rest, angle + turn.to_radians()).0);
             beside.sort_by(f64::total_cmp);
             let metres = take_aligned(frame, rest, angle, parameters);
@@ -173,22 +151,15 @@ fn histogram(gradients: &Gradients) -> Vec<u64> {
 /// The histogram over the angle in the map frame.
 fn turned(histogram: &[u64], frame: &Frame) -> Vec<f64> {
     let shift = (frame.origin[2] / PI * BINS as f64).round().rem_euclid(BINS as f64) as usize;
-    (0..BINS)
-        .map(|bin| histogram[(bin + BINS - shift) % BINS] as f64)
-        .collect()
+    (0..BINS).map(|bin| histogram[(bin + BINS - shift) % BINS] as f64).collect()
 }
 
 /// Peaks of the smoothed histogram, highest first, as angles on the grid.
 fn candidates(histogram: &[u64]) -> Vec<f64> {
     let at = |bin: usize, shift: isize| histogram[(bin as isize + shift).rem_euclid(BINS as isize) as usize];
     let reach = SMOOTHING as isize;
-    let smooth: Vec<u64> = (0..BINS)
-        .map(|bin| {
-            (-reach..=reach)
-                .map(|s| at(bin, s) * (reach + 1 - s.abs()) as u64)
-                .sum()
-        })
-        .collect();
+    let smooth: Vec<u64> =
+        (0..BINS).map(|bin| (-reach..=reach).map(|s| at(bin, s) * (reach + 1 - s.abs()) as u64).sum()).collect();
     let highest = smooth.iter().copied().max().unwrap_or(0);
     let mut peaks: Vec<usize> = (0..BINS)
         .filter(|&bin| {
@@ -201,10 +172,7 @@ fn candidates(histogram: &[u64]) -> Vec<f64> {
         .collect();
     peaks.sort_by_key(|&bin| (std::cmp::Reverse(smooth[bin]), bin));
     peaks.truncate(MOST_CANDIDATES);
-    peaks
-        .into_iter()
-        .map(|bin| undirected(((bin as f64 + 0.5) / BINS as f64 - 0.5) * PI))
-        .collect()
+    peaks.into_iter().map(|bin| undirected(((bin as f64 + 0.5) / BINS as f64 - 0.5) * PI)).collect()
 }
 
 /// The angle near `start` at which the radiogram is sharpest.
@@ -214,17 +182,19 @@ fn sharpest(frame: &Frame, gradients: &Gradients, start: f64, parameters: &Param
     let mut best = start;
     for (range, step) in SEARCH {
         let steps = (range / step).round() as i64;
-        let centre = best;
-        let tried: Vec<(f64, f64)> = (-steps..=steps)
-            .map(|n| centre + (n as f64 * step).to_radians())
-            .map(|angle| (angle, pixels.sharpness(frame, angle)))
-            .collect();
-        let top = (0..tried.len())
-            .max_by(|&a, &b| tried[a].1.total_cmp(&tried[b].1))
-            .unwrap_or(0);
-        best = tried[top].0;
-        if let (Some(left), Some(right)) = (top.checked_sub(1), tried.get(top + 1)) {
-            best += step.to_radians() * vertex(tried[left].1, tried[top].1, right.1);
+        // A peak of the histogram may lie further off than the range: while the best is at its end, it moves on.
+        for _ in 0..MOST_MOVES {
+            let centre = best;
+            let tried: Vec<(f64, f64)> = (-steps..=steps)
+                .map(|n| centre + (n as f64 * step).to_radians())
+                .map(|angle| (angle, pixels.sharpness(frame, angle)))
+                .collect();
+            let top = (0..tried.len()).max_by(|&a, &b| tried[a].1.total_cmp(&tried[b].1)).unwrap_or(0);
+            best = tried[top].0;
+            if let (Some(left), Some(right)) = (top.checked_sub(1), tried.get(top + 1)) {
+                best += step.to_radians() * vertex(tried[left].1, tried[top].1, right.1);
+                break;
+            }
         }
     }
     undirected(best)
@@ -233,11 +203,7 @@ fn sharpest(frame: &Frame, gradients: &Gradients, start: f64, parameters: &Param
 /// Where the parabola through three equally spaced values has its top, in steps from the middle one.
 fn vertex(left: f64, middle: f64, right: f64) -> f64 {
     let bend = left - 2.0 * middle + right;
-    if bend < 0.0 {
-        (0.5 * (left - right) / bend).clamp(-0.5, 0.5)
-    } else {
-        0.0
-    }
+    if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 }
 }
 
 /// Metres of structure that stand out of the background as lines along `angle`; the first bin of the projection, and
@@ -258,10 +224,7 @@ fn aligned(frame: &Frame, gradients: &Gradients, angle: f64) -> (f64, i64, Vec<b
     while n + 1 < values.len() {
         let peak = over(n - 1, n + 2);
         let top = values[n] >= values[n - 1] && values[n] > values[n + 1];
-        let (from, to) = (
-            n.saturating_sub(BACKGROUND_PIXELS),
-            (n + BACKGROUND_PIXELS + 1).min(values.len()),
-        );
+        let (from, to) = (n.saturating_sub(BACKGROUND_PIXELS), (n + BACKGROUND_PIXELS + 1).min(values.len()));
         let around = (over(from, to) - peak) / (to - from) as f64 * 3.0;
         n += 1;
         if top && peak > SHORTEST_PIXELS && peak > 2.0 * around {

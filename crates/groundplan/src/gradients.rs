@@ -40,10 +40,8 @@ const MAX_RADIUS: usize = 32;
 #[must_use]
 pub fn find_gradients(grid: &Grid, parameters: &Parameters, threads: usize) -> Gradients {
     let height = grid.frame.height;
-    let rows: Vec<Vec<u32>> = map_bands(height, threads, |band| edge_pixels(grid, band))
-        .into_iter()
-        .flatten()
-        .collect();
+    let rows: Vec<Vec<u32>> =
+        map_bands(height, threads, |band| edge_pixels(grid, band)).into_iter().flatten().collect();
     let radius = (parameters.gradients_radius / grid.frame.resolution).round();
     let radius = (radius.clamp(0.0, MAX_RADIUS as f64) as usize).clamp(MIN_RADIUS, MAX_RADIUS);
     let parts = map_bands(height, threads, |band| {
@@ -96,10 +94,8 @@ fn row_gradients(rows: &[Vec<u32>], y: usize, radius: usize, out: &mut Gradients
         return;
     }
     let around = y.saturating_sub(radius)..(y + radius + 1).min(rows.len());
-    let reaches: Vec<i64> = around
-        .clone()
-        .map(|other| (radius.pow(2) - y.abs_diff(other).pow(2)).isqrt() as i64)
-        .collect();
+    let reaches: Vec<i64> =
+        around.clone().map(|other| (radius.pow(2) - y.abs_diff(other).pow(2)).isqrt() as i64).collect();
     let mut starts = vec![0usize; around.len()];
     for &column in columns {
         let x = i64::from(column);
@@ -133,8 +129,7 @@ fn row_gradients(rows: &[Vec<u32>], y: usize, radius: usize, out: &mut Gradients
         let split = (((xx - yy) as f64).powi(2) + ((2 * xy) as f64).powi(2)).sqrt();
         let magnitude = if spread > 0.0 { split / spread } else { 0.0 };
         out.pixels.push([column, y as u32]);
-        out.angles
-            .push(undirected(0.5 * libm::atan2((2 * xy) as f64, (xx - yy) as f64)) as f32);
+        out.angles.push(undirected(0.5 * libm::atan2((2 * xy) as f64, (xx - yy) as f64)) as f32);
         out.magnitudes.push((magnitude * 255.0).round() as u8);
     }
 }

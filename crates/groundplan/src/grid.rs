@@ -29,13 +29,7 @@ impl Table {
     /// unknown), one for each value of a pixel.
     #[must_use]
     pub fn new(values: &[i8; 256], states: &[u8; 256]) -> Self {
-        let occupancy = values.map(|v| {
-            if (0..=100).contains(&v) {
-                v.unsigned_abs()
-            } else {
-                PRIOR_PERCENT
-            }
-        });
+        let occupancy = values.map(|v| if (0..=100).contains(&v) { v.unsigned_abs() } else { PRIOR_PERCENT });
         let states = states.map(|s| match s {
             0 => State::Free,
             1 => State::Occupied,
@@ -79,34 +73,21 @@ impl Frame {
     /// A frame; resolution must be positive and everything finite, which the door has checked.
     #[must_use]
     pub fn new(width: usize, height: usize, resolution: f64, origin: [f64; 3]) -> Self {
-        Self {
-            width,
-            height,
-            resolution,
-            origin,
-            cos: libm::cos(origin[2]),
-            sin: libm::sin(origin[2]),
-        }
+        Self { width, height, resolution, origin, cos: libm::cos(origin[2]), sin: libm::sin(origin[2]) }
     }
 
     /// Pixels to metres.
     #[must_use]
     pub fn to_metres(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (u, v) = (x * self.resolution, y * self.resolution);
-        [
-            self.origin[0] + u * self.cos - v * self.sin,
-            self.origin[1] + u * self.sin + v * self.cos,
-        ]
+        [self.origin[0] + u * self.cos - v * self.sin, self.origin[1] + u * self.sin + v * self.cos]
     }
 
     /// Metres to pixels.
     #[must_use]
     pub fn to_pixels(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (u, v) = (x - self.origin[0], y - self.origin[1]);
-        [
-            (u * self.cos + v * self.sin) / self.resolution,
-            (v * self.cos - u * self.sin) / self.resolution,
-        ]
+        [(u * self.cos + v * self.sin) / self.resolution, (v * self.cos - u * self.sin) / self.resolution]
     }
 
     /// Angle of a direction on the grid to the map frame, in [-pi/2, pi/2).
@@ -175,12 +156,7 @@ impl<'a> Grid<'a> {
     #[must_use]
     pub fn new(pixels: &'a [u8], bottom_up: bool, table: &'a Table, frame: Frame) -> Self {
         assert_eq!(pixels.len(), frame.width * frame.height, "pixels of the grid");
-        Self {
-            pixels,
-            bottom_up,
-            table,
-            frame,
-        }
+        Self { pixels, bottom_up, table, frame }
     }
 
     /// Row `y` counted from the bottom, left to right.

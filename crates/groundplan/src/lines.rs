@@ -27,6 +27,12 @@ impl Lines {
         self.offsets.len()
     }
 
+    /// What a strong line has: half of all structure lies on lines at least as strong, metres.
+    #[must_use]
+    pub fn typical_amplitude(&self) -> f64 {
+        reaching(&self.amplitudes, 0.5)
+    }
+
     /// True when there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -47,15 +53,19 @@ pub fn find_lines(radiograms: &[Radiogram], parameters: &Parameters) -> Lines {
     let mut found: Vec<(u32, f64, f64, f64)> = Vec::new();
     for radiogram in radiograms {
         let signal = &radiogram.values;
-        for peak in wavelets::peaks(&respond(radiogram, parameters), parameters.lines_snr) {
-            let (place, amplitude) = measure(signal, &peak);
+        let peaks = wavelets::peaks(&respond(radiogram, parameters), parameters.lines_snr);
+        for (n, peak) in peaks.iter().enumerate() {
+            // A line's structure reaches half way to its neighbours at most.
+            let before = n.checked_sub(1).map_or(0, |m| usize::midpoint(peaks[m].bin, peak.bin + 1));
+            let after = peaks.get(n + 1).map_or(signal.len(), |next| usize::midpoint(peak.bin, next.bin) + 1);
+            let (place, amplitude) = measure(signal, peak, before..after);
             let offset = radiogram.start + place * radiogram.step;
             let width = peak.width * radiogram.step;
             found.push((radiogram.direction as u32, tidy(offset), tidy(amplitude), tidy(width)));
         }
     }
     let amplitudes: Vec<f64> = found.iter().map(|f| f.2).collect();
-    let least = least_amplitude(amplitudes, parameters);
+    let least = least_amplitude(&amplitudes, parameters);
     found.retain(|f| f.2 >= least);
     found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     Lines {
@@ -76,11 +86,11 @@ pub fn respond(radiogram: &Radiogram, parameters: &Parameters) -> wavelets::Resp
     wavelets::transform(&radiogram.values, &wavelets::widths(low, high))
 }
 
-/// A peak's centre in bins and its metres of structure, above the lower of its two flanks.
-fn measure(signal: &[f64], peak: &Peak) -> (f64, f64) {
+/// A peak's centre in bins and its metres of structure, above the lower of its two flanks; within some bins.
+fn measure(signal: &[f64], peak: &Peak, within: std::ops::Range<usize>) -> (f64, f64) {
     let reach = (1.5 * peak.width).round().clamp(1.0, 4.0) as usize;
-    let from = peak.bin.saturating_sub(reach);
-    let to = (peak.bin + reach + 1).min(signal.len());
+    let from = peak.bin.saturating_sub(reach).max(within.start).min(peak.bin);
+    let to = (peak.bin + reach + 1).min(within.end).max(peak.bin + 1);
     let base = signal[from].min(signal[to - 1]);
     let (mut sum, mut moment) = (0.0, 0.0);
     for (n, value) in signal[from..to].iter().enumerate() {
@@ -92,23 +102,23 @@ fn measure(signal: &[f64], peak: &Peak) -> (f64, f64) {
 }
 
 /// The resolution knob: the least amplitude of a line.
-fn least_amplitude(mut amplitudes: Vec<f64>, parameters: &Parameters) -> f64 {
-    if let Some(metres) = parameters.lines_min_amplitude {
-        return metres;
+fn least_amplitude(amplitudes: &[f64], parameters: &Parameters) -> f64 {
+    match (parameters.lines_min_amplitude, parameters.lines_detail) {
+        (Some(metres), _) => metres,
+        (None, Some(detail)) => reaching(amplitudes, 0.5) * libm::pow(FINEST, detail),
+        (None, None) => reaching(amplitudes, EXPLAINED),
     }
+}
+
+/// The amplitude down to which lines together hold a share of all structure on lines.
+fn reaching(amplitudes: &[f64], share: f64) -> f64 {
+    let mut amplitudes = amplitudes.to_vec();
     amplitudes.sort_by(|a, b| b.total_cmp(a));
     let total: f64 = amplitudes.iter().sum();
-    let reaching = |share: f64| {
-        let mut sum = 0.0;
-        let enough = |a: &&f64| {
-            sum += **a;
-            sum >= share * total
-        };
-        amplitudes.iter().find(enough).copied().unwrap_or(0.0)
+    let mut sum = 0.0;
+    let enough = |a: &f64| {
+        sum += *a;
+        sum >= share * total
     };
-    match parameters.lines_detail {
-        // What a strong line has: half of all structure lies on lines at least as strong.
-        Some(detail) => reaching(0.5) * libm::pow(FINEST, detail),
-        None => reaching(EXPLAINED),
-    }
+    amplitudes.into_iter().find(enough).unwrap_or(0.0)
 }

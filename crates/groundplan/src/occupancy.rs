@@ -61,13 +61,7 @@ pub fn find_occupancy(
     let evidence: Vec<Sums> = sums
         .iter()
         .zip(&arrangement.face_starts)
-        .map(|(sums, &first)| {
-            if sums.pixels > 0 {
-                *sums
-            } else {
-                pixel_under(grid, arrangement, first)
-            }
-        })
+        .map(|(sums, &first)| if sums.pixels > 0 { *sums } else { pixel_under(grid, arrangement, first) })
         .collect();
     let share = |part: i64, of: i64| tidy(part as f64 / of as f64);
     let faces: Vec<f64> = evidence.iter().map(|s| share(s.percent, 100 * s.pixels)).collect();
@@ -212,16 +206,9 @@ impl Crossings {
                 add(edge);
             }
         }
-        let border = arrangement
-            .edge_lines
-            .iter()
-            .rposition(|&line| line != NONE)
-            .map_or(0, |n| n + 1);
+        let border = arrangement.edge_lines.iter().rposition(|&line| line != NONE).map_or(0, |n| n + 1);
         (border as u32..arrangement.edges.len() as u32).for_each(add);
-        Self {
-            first_row: band.start,
-            rows,
-        }
+        Self { first_row: band.start, rows }
     }
 
     /// Calls `visit` with each half-edge that runs upwards across row `y` and the number of pixels left of it.
@@ -270,12 +257,7 @@ fn edge_occupancy(
         let diagonal = (frame.width + frame.height) as f64;
         let span = 2 * diagonal.ceil() as usize + 4;
         let mut covered: Vec<Vec<u64>> = vec![Vec::new(); members.len()];
-        for ((pixel, &along), &magnitude) in gradients
-            .pixels
-            .iter()
-            .zip(&gradients.angles)
-            .zip(&gradients.magnitudes)
-        {
+        for ((pixel, &along), &magnitude) in gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes) {
             if weight(f64::from(along), magnitude, angle, tolerance, true) == 0 {
                 continue;
             }
@@ -339,10 +321,6 @@ fn counts(bits: &[u64]) -> Vec<u32> {
 /// Set bits before bit `n`.
 fn count_below(bits: &[u64], sums: &[u32], n: usize) -> u32 {
     let word = (n / 64).min(bits.len() - 1);
-    let rest = if n / 64 >= bits.len() {
-        u64::MAX
-    } else {
-        (1u64 << (n % 64)) - 1
-    };
+    let rest = if n / 64 >= bits.len() { u64::MAX } else { (1u64 << (n % 64)) - 1 };
     sums[word] + (bits[word] & rest).count_ones()
 }

@@ -110,11 +110,7 @@ impl Setting for Option<usize> {
         self.map_or(Value::Auto, |n| Value::Number(n as f64))
     }
     fn take(&mut self, value: Value) {
-        *self = if let Value::Number(n) = value {
-            Some(n as usize)
-        } else {
-            None
-        };
+        *self = if let Value::Number(n) = value { Some(n as usize) } else { None };
     }
 }
 
@@ -257,21 +253,13 @@ impl Parameter {
         Err(ParameterError {
             code: "parameter.range",
             message: format!("{} cannot be {value}", self.name),
-            hint: format!(
-                "{} takes {}{}",
-                self.name,
-                self.range,
-                if self.auto { ", or auto" } else { "" }
-            ),
+            hint: format!("{} takes {}{}", self.name, self.range, if self.auto { ", or auto" } else { "" }),
         })
     }
 }
 
 fn unknown(name: &str) -> ParameterError {
-    let nearest = TABLE
-        .iter()
-        .min_by_key(|row| edits(row.name, name))
-        .map_or("", |row| row.name);
+    let nearest = TABLE.iter().min_by_key(|row| edits(row.name, name)).map_or("", |row| row.name);
     ParameterError {
         code: "parameter.unknown",
         message: format!("there is no parameter {name}"),
@@ -335,17 +323,12 @@ mod tests {
     #[test]
     fn an_unknown_name_gives_the_nearest() {
         let fault = Parameters::default().set("lines.snt", Value::Number(3.0)).unwrap_err();
-        assert_eq!(
-            (fault.code, fault.hint.as_str()),
-            ("parameter.unknown", "did you mean lines.snr?")
-        );
+        assert_eq!((fault.code, fault.hint.as_str()), ("parameter.unknown", "did you mean lines.snr?"));
     }
 
     #[test]
     fn a_value_out_of_range_names_itself() {
-        let fault = Parameters::default()
-            .set("directions.count", Value::Number(2.5))
-            .unwrap_err();
+        let fault = Parameters::default().set("directions.count", Value::Number(2.5)).unwrap_err();
         assert_eq!(fault.message, "directions.count cannot be 2.5");
         assert!(Parameters::default().set("lines.snr", Value::Number(f64::NAN)).is_err());
         assert!(Parameters::default().set("lines.snr", Value::Auto).is_err());

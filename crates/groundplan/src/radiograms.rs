@@ -45,16 +45,8 @@ impl Selection {
     /// The pixels that lie along `angle` (on the grid), within `tolerance`; with `specks` those without a direction
     /// count a little too, as the posts of a rack do.
     pub fn along(gradients: &Gradients, angle: f64, tolerance: f64, specks: bool) -> Self {
-        let mut chosen = Self {
-            centres: Vec::new(),
-            weights: Vec::new(),
-            indices: Vec::new(),
-        };
-        let all = gradients
-            .pixels
-            .iter()
-            .zip(&gradients.angles)
-            .zip(&gradients.magnitudes);
+        let mut chosen = Self { centres: Vec::new(), weights: Vec::new(), indices: Vec::new() };
+        let all = gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes);
         for (index, ((pixel, &along), &magnitude)) in all.enumerate() {
             let weight = weight(f64::from(along), magnitude, angle, tolerance, specks);
             if weight > 0 {
@@ -95,9 +87,7 @@ impl Selection {
     /// The bin that each pixel lies nearest to.
     pub fn bins(&self, angle: f64) -> impl Iterator<Item = i64> + '_ {
         let [nx, ny] = normal(angle);
-        self.centres
-            .iter()
-            .map(move |[x, y]| (nx * x + ny * y + (1 << BITS)) >> (BITS + 1))
+        self.centres.iter().map(move |[x, y]| (nx * x + ny * y + (1 << BITS)) >> (BITS + 1))
     }
 
     /// Sum of squares of the projection: it is greatest where walls fall on single bins. The projection is finer than
@@ -105,10 +95,7 @@ impl Selection {
     /// slightly off, at which the walls happen to fall upon bins, would look sharper than the right one.
     pub fn sharpness(&self, frame: &Frame, angle: f64) -> f64 {
         let (_, bins) = self.project_fine(frame, angle, SHARP_BITS);
-        smooth(&smooth(&bins))
-            .into_iter()
-            .map(|value| (value as f64).powi(2))
-            .sum()
+        smooth(&smooth(&bins)).into_iter().map(|value| (value as f64).powi(2)).sum()
     }
 }
 
@@ -127,10 +114,7 @@ fn smooth(bins: &[i64]) -> Vec<i64> {
 /// Normal of a direction in fixed point.
 fn normal(angle: f64) -> [i64; 2] {
     let scale = f64::from(1u32 << BITS);
-    [
-        (-libm::sin(angle) * scale).round() as i64,
-        (libm::cos(angle) * scale).round() as i64,
-    ]
+    [(-libm::sin(angle) * scale).round() as i64, (libm::cos(angle) * scale).round() as i64]
 }
 
 /// A pixel's weight along `angle`, from 0 to [`UNIT`].
@@ -170,12 +154,7 @@ pub fn find_radiograms(
         if ends[0] > ends[1] {
             values.reverse();
         }
-        Radiogram {
-            direction,
-            start: tidy(ends[0].min(ends[1])),
-            step: frame.resolution,
-            values,
-        }
+        Radiogram { direction, start: tidy(ends[0].min(ends[1])), step: frame.resolution, values }
     };
     directions.angles.iter().enumerate().map(project).collect()
 }

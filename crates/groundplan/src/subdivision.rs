@@ -32,16 +32,8 @@ impl Subdivision {
     /// From an arrangement, with coordinates in the map frame.
     #[must_use]
     pub fn new(frame: &Frame, arrangement: &Arrangement) -> Self {
-        let vertices: Vec<[f64; 2]> = arrangement
-            .vertices
-            .iter()
-            .map(|&v| frame.to_metres(v).map(tidy))
-            .collect();
-        let edge_faces = arrangement
-            .faces
-            .chunks_exact(2)
-            .map(|pair| [pair[0], pair[1]])
-            .collect();
+        let vertices: Vec<[f64; 2]> = arrangement.vertices.iter().map(|&v| frame.to_metres(v).map(tidy)).collect();
+        let edge_faces = arrangement.faces.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
         let faces = arrangement.face_starts.len();
         let mut made = Self {
             vertices,
@@ -103,11 +95,7 @@ impl Subdivision {
     }
 
     fn ids_out_of_range(&self) -> bool {
-        let (v, e, f) = (
-            self.vertices.len() as u32,
-            self.edge_vertices.len() as u32,
-            self.faces() as u32,
-        );
+        let (v, e, f) = (self.vertices.len() as u32, self.edge_vertices.len() as u32, self.faces() as u32);
         let lists = self.edge_lines.len() != self.edge_vertices.len()
             || self.edge_faces.len() != self.edge_vertices.len()
             || self.face_vertices.len() != self.face_edges.len()
@@ -117,12 +105,7 @@ impl Subdivision {
             || self.face_offsets.windows(2).any(|w| w[0] > w[1])
             || self.centres.len() != self.faces();
         lists
-            || self
-                .edge_vertices
-                .iter()
-                .flatten()
-                .chain(&self.face_vertices)
-                .any(|&n| n >= v)
+            || self.edge_vertices.iter().flatten().chain(&self.face_vertices).any(|&n| n >= v)
             || self.face_edges.iter().any(|&n| n >= e)
             || self.edge_faces.iter().flatten().any(|&n| n >= f && n != NONE)
     }
@@ -144,11 +127,7 @@ impl Subdivision {
         let pieces = (0..parent.len()).filter(|&n| parent[n] == n as u32).count();
         let (v, e, f) = (self.vertices.len(), self.edge_vertices.len(), self.faces() + 1);
         if v + f != 1 + pieces + e {
-            found.push(format!(
-                "V - E + F = {} and not 1 + C = {}",
-                v as i64 - e as i64 + f as i64,
-                1 + pieces
-            ));
+            found.push(format!("V - E + F = {} and not 1 + C = {}", v as i64 - e as i64 + f as i64, 1 + pieces));
         }
     }
 

@@ -63,9 +63,7 @@ pub struct Given {
 pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> Survey {
     let frame = &grid.frame;
     let gradients = find_gradients(grid, parameters, threads);
-    let directions = given
-        .directions
-        .unwrap_or_else(|| find_directions(frame, &gradients, parameters));
+    let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters));
     let radiograms = find_radiograms(frame, &gradients, &directions, parameters);
     let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
     let arrangement = arrange(frame, &directions.angles, &lines);
@@ -86,10 +84,7 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
     });
     let warnings = find_warnings(&gradients, &directions, &lines, &labels, parameters);
     debug_assert_eq!(subdivision.problems(), Vec::<String>::new());
-    debug_assert_eq!(
-        occupancy.pixels.iter().sum::<u64>(),
-        (frame.width * frame.height) as u64
-    );
+    debug_assert_eq!(occupancy.pixels.iter().sum::<u64>(), (frame.width * frame.height) as u64);
     Survey {
         gradients,
         directions,
@@ -123,16 +118,10 @@ fn find_warnings(
     let mut warn = |code, message| warnings.push(Warning { code, message });
     let edges = gradients.pixels.len();
     if edges < FEW_EDGE_PIXELS {
-        warn(
-            "few-edges",
-            format!("the map has only {edges} edge pixels: nothing much can be said of it"),
-        );
+        warn("few-edges", format!("the map has only {edges} edge pixels: nothing much can be said of it"));
     }
     if directions.angles.is_empty() {
-        warn(
-            "no-structure",
-            "no direction stands out: the map has no straight structure".to_owned(),
-        );
+        warn("no-structure", "no direction stands out: the map has no straight structure".to_owned());
     } else if directions.explained < LITTLE_EXPLAINED {
         let percent = (100.0 * directions.explained).round();
         warn(
@@ -154,13 +143,7 @@ fn find_warnings(
     if let Some(count) = parameters.directions_count
         && directions.angles.len() < count
     {
-        warn(
-            "few-directions",
-            format!(
-                "{count} directions were asked for and {} found",
-                directions.angles.len()
-            ),
-        );
+        warn("few-directions", format!("{count} directions were asked for and {} found", directions.angles.len()));
     }
     if !directions.angles.is_empty() && lines.is_empty() {
         warn("no-lines", "no line stands out of the radiograms".to_owned());

@@ -64,9 +64,7 @@ pub fn find_walls(subdivision: &Subdivision, occupancy: &Occupancy, parameters: 
         if !cogent[e] {
             return None;
         }
-        let unknown = subdivision.edge_faces[e]
-            .iter()
-            .any(|&f| occupancy.states[f as usize] == State::Unknown);
+        let unknown = subdivision.edge_faces[e].iter().any(|&f| occupancy.states[f as usize] == State::Unknown);
         if unknown && occupancy.edges[e] < LEAST_OCCUPANCY_AT_FRONTIER {
             None
         } else if disparity[e] > parameters.walls_disparity {
@@ -83,18 +81,10 @@ pub fn find_walls(subdivision: &Subdivision, occupancy: &Occupancy, parameters: 
         let ends = subdivision.edge_vertices[edge].map(|v| subdivision.vertices[v as usize]);
         match (found, walls.last_mut()) {
             (Some(_), Some(wall)) if found == open => wall.points[1] = ends[1],
-            (Some((line, kind)), _) => walls.push(Wall {
-                points: ends,
-                line,
-                kind,
-            }),
+            (Some((line, kind)), _) => walls.push(Wall { points: ends, line, kind }),
             (None, _) => {}
         }
         open = found;
     }
-    Walls {
-        cogent,
-        disparity,
-        walls,
-    }
+    Walls { cogent, disparity, walls }
 }

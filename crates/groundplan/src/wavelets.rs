@@ -52,10 +52,7 @@ pub fn widths(low: f64, high: f64) -> Vec<f64> {
 #[must_use]
 pub fn transform(signal: &[f64], widths: &[f64]) -> Response {
     let rows = widths.iter().map(|&width| convolve(signal, &ricker(width))).collect();
-    Response {
-        widths: widths.to_vec(),
-        rows,
-    }
+    Response { widths: widths.to_vec(), rows }
 }
 
 /// Right half of a Ricker wavelet, its middle first.
@@ -70,11 +67,7 @@ fn ricker(sigma: f64) -> Vec<f64> {
         .collect();
     // A sampled narrow wavelet does not quite sum to zero; a flat signal must give no response.
     let sum = half[0] + 2.0 * half[1..].iter().sum::<f64>();
-    let weight: f64 = 1.0
-        + 2.0
-            * (1..=reach)
-                .map(|n| libm::exp(-0.5 * (n as f64 / sigma).powi(2)))
-                .sum::<f64>();
+    let weight: f64 = 1.0 + 2.0 * (1..=reach).map(|n| libm::exp(-0.5 * (n as f64 / sigma).powi(2))).sum::<f64>();
     for (n, value) in half.iter_mut().enumerate() {
         *value -= sum / weight * libm::exp(-0.5 * (n as f64 / sigma).powi(2));
     }
@@ -123,12 +116,7 @@ pub fn peaks(response: &Response, snr: f64) -> Vec<Peak> {
         .map(|ridge| {
             let (value, row) = ridge.best;
             let floor = noise[ridge.bin].max(f64::MIN_POSITIVE);
-            Peak {
-                bin: ridge.bin,
-                width: response.widths[row],
-                response: value,
-                snr: value / floor,
-            }
+            Peak { bin: ridge.bin, width: response.widths[row], response: value, snr: value / floor }
         })
         .filter(|peak| peak.snr >= snr)
         .collect();
@@ -154,10 +142,7 @@ fn ridges(response: &Response) -> Vec<Ridge> {
         for ridge in &mut open {
             // The nearest maximum continues the ridge; the others start ridges of their own.
             let after = maxima.partition_point(|&n| n < ridge.bin);
-            let near = [after.checked_sub(1), Some(after)]
-                .into_iter()
-                .flatten()
-                .filter(|&m| m < maxima.len());
+            let near = [after.checked_sub(1), Some(after)].into_iter().flatten().filter(|&m| m < maxima.len());
             let nearest = near.filter(|&m| free[m]).min_by_key(|&m| maxima[m].abs_diff(ridge.bin));
             match nearest.filter(|&m| maxima[m].abs_diff(ridge.bin) <= reach) {
                 Some(m) => {
@@ -174,19 +159,13 @@ fn ridges(response: &Response) -> Vec<Ridge> {
         let (ended, going): (Vec<Ridge>, Vec<Ridge>) = open.into_iter().partition(|ridge| ridge.gaps > MOST_GAPS);
         closed.extend(ended);
         open = going;
-        open.extend(
-            maxima
-                .iter()
-                .zip(&free)
-                .filter(|(_, free)| **free)
-                .map(|(&bin, _)| Ridge {
-                    bin,
-                    points: 1,
-                    gaps: 0,
-                    row,
-                    best: (values[bin], row),
-                }),
-        );
+        open.extend(maxima.iter().zip(&free).filter(|(_, free)| **free).map(|(&bin, _)| Ridge {
+            bin,
+            points: 1,
+            gaps: 0,
+            row,
+            best: (values[bin], row),
+        }));
         open.sort_by_key(|ridge| ridge.bin);
     }
     closed.extend(open);
@@ -200,11 +179,7 @@ fn noise(narrow: &[f64]) -> Vec<f64> {
     let magnitudes: Vec<f64> = narrow.iter().map(|v| v.abs()).collect();
     let mut some: Vec<f64> = magnitudes.iter().copied().filter(|v| *v > 0.0).collect();
     let middle = some.len() / 2;
-    let least = if some.is_empty() {
-        0.0
-    } else {
-        0.25 * *some.select_nth_unstable_by(middle, f64::total_cmp).1
-    };
+    let least = if some.is_empty() { 0.0 } else { 0.25 * *some.select_nth_unstable_by(middle, f64::total_cmp).1 };
     let mut window: Vec<f64> = vec![0.0; 2 * NOISE_BINS + 1];
     let mut exchange = |gone: f64, come: f64| {
         let place = window.partition_point(|v| *v < gone);

@@ -16,9 +16,7 @@ fn faces(case: &Case) -> usize {
 fn degree(made: &Arranged, x: f64, y: f64) -> usize {
     let vertices = &made.arrangement.vertices;
     let near = |[vx, vy]: [f64; 2]| (vx - x).abs() < 1e-9 && (vy - y).abs() < 1e-9;
-    let at: Vec<u32> = (0..vertices.len() as u32)
-        .filter(|&v| near(vertices[v as usize]))
-        .collect();
+    let at: Vec<u32> = (0..vertices.len() as u32).filter(|&v| near(vertices[v as usize])).collect();
     assert_eq!(at.len(), 1, "one vertex at {x} {y}");
     made.arrangement.edges.iter().flatten().filter(|&&v| v == at[0]).count()
 }
@@ -105,17 +103,8 @@ fn four_families_meet_in_every_point_of_a_grid() {
     let whole = |value: f64| value == 4.0 * (value / 4.0).round();
     for (v, &[x, y]) in made.arrangement.vertices.iter().enumerate() {
         let inside = x > 0.0 && x < 40.0 && y > 0.0 && y < 40.0;
-        let ways = made
-            .arrangement
-            .edges
-            .iter()
-            .flatten()
-            .filter(|&&end| end as usize == v)
-            .count();
-        assert!(
-            !inside || ways == if whole(x) && whole(y) { 8 } else { 4 },
-            "{x} {y}: {ways}"
-        );
+        let ways = made.arrangement.edges.iter().flatten().filter(|&&end| end as usize == v).count();
+        assert!(!inside || ways == if whole(x) && whole(y) { 8 } else { 4 }, "{x} {y}: {ways}");
     }
     // Every square of the grid is four triangles.
     assert_eq!(made.subdivision.faces(), 10 * 10 * 4);
@@ -149,12 +138,7 @@ fn the_same_line_twice_counts_once() {
     }
     let made = sound(&case);
     assert_eq!(made.subdivision.faces(), 2);
-    let with_edges = made
-        .arrangement
-        .line_edges
-        .iter()
-        .filter(|edges| !edges.is_empty())
-        .count();
+    let with_edges = made.arrangement.line_edges.iter().filter(|edges| !edges.is_empty()).count();
     assert_eq!(with_edges, 1);
 }
 
@@ -312,13 +296,7 @@ fn a_map_of_forty_thousand_pixels_square_is_as_exact_as_a_small_one() {
     let far = side as f64 - 1.0;
     for degrees in [0.0, -90.0, 45.0, 12.3, -77.7, 33.0, 33.5] {
         let family = case.family(degrees);
-        for (x, y) in [
-            (1.0, 1.0),
-            (far, far),
-            (far, 1.0),
-            (20_001.0, 19_999.0),
-            (12_345.0, 34_567.0),
-        ] {
+        for (x, y) in [(1.0, 1.0), (far, far), (far, 1.0), (20_001.0, 19_999.0), (12_345.0, 34_567.0)] {
             case.through(family, x, y);
         }
     }

@@ -14,11 +14,7 @@ fn large_case(seed: u64) -> Case {
     let mut case = Case::new(random.pick(&sides) as usize, random.pick(&sides) as usize);
     let (w, h) = (case.frame.width as f64, case.frame.height as f64);
     if random.below(2) == 0 {
-        let origin = [
-            random.between(-1e6, 1e6),
-            random.between(-1e6, 1e6),
-            random.between(-4.0, 4.0),
-        ];
+        let origin = [random.between(-1e6, 1e6), random.between(-1e6, 1e6), random.between(-4.0, 4.0)];
         let resolution = random.pick(&[0.01, 0.05, 1.0, 10.0]);
         case.frame = Frame::new(case.frame.width, case.frame.height, resolution, origin);
     }
@@ -59,9 +55,7 @@ fn random_parameters(random: &mut Random) -> Parameters {
                 Value::Numbers((0..=random.below(4)).map(|_| random.between(low, high)).collect())
             }
         };
-        parameters
-            .set(row.name, value)
-            .unwrap_or_else(|fault| panic!("{fault}"));
+        parameters.set(row.name, value).unwrap_or_else(|fault| panic!("{fault}"));
     }
     parameters
 }
@@ -99,10 +93,7 @@ fn survey_case(seed: u64) -> Result<(), String> {
         let (values, states): (Vec<i8>, Vec<u8>) =
             (0..256).map(|_| (random.next() as i8, random.below(4) as u8)).unzip();
         let sizes = "a table has 256 entries";
-        Table::new(
-            &values.try_into().map_err(|_| sizes)?,
-            &states.try_into().map_err(|_| sizes)?,
-        )
+        Table::new(&values.try_into().map_err(|_| sizes)?, &states.try_into().map_err(|_| sizes)?)
     } else {
         Table::trinary()
     };
@@ -118,22 +109,12 @@ fn survey_case(seed: u64) -> Result<(), String> {
     if made.occupancy.pixels.iter().sum::<u64>() != (width * height) as u64 {
         return Err("a pixel lies in no face, or in two".to_owned());
     }
-    let shares = [
-        &made.occupancy.faces,
-        &made.occupancy.unknown,
-        &made.occupancy.free,
-        &made.occupancy.edges,
-    ];
+    let shares = [&made.occupancy.faces, &made.occupancy.unknown, &made.occupancy.free, &made.occupancy.edges];
     if shares.into_iter().flatten().any(|share| !(0.0..=1.0).contains(share)) {
         return Err("a share is not between 0 and 1".to_owned());
     }
     let lengths = [&made.lines.offsets, &made.lines.amplitudes, &made.lines.widths];
-    if lengths
-        .into_iter()
-        .flatten()
-        .chain(&made.directions.angles)
-        .any(|value| !value.is_finite())
-    {
+    if lengths.into_iter().flatten().chain(&made.directions.angles).any(|value| !value.is_finite()) {
         return Err("a line or a direction is not finite".to_owned());
     }
     let again = survey(&grid, &parameters, Given::default(), 4);
@@ -165,13 +146,16 @@ fn a_few_hundred_seeds_hold() {
 }
 
 #[test]
+fn the_centre_of_a_sliver_lies_in_it() {
+    // Rounded to micrometres, its vertices enclosed next to nothing, and the centre flew off.
+    Case::random(1167).check().map_or_else(|fault| panic!("{fault}"), drop);
+}
+
+#[test]
 #[ignore = "runs as long as GROUNDPLAN_FUZZ_SECONDS says"]
 fn seeds_hold_for_as_long_as_asked() {
     let number = |name: &str, default: u64| std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(default);
-    let (seconds, first) = (
-        number("GROUNDPLAN_FUZZ_SECONDS", 60),
-        number("GROUNDPLAN_FUZZ_SEED", 1_000_000),
-    );
+    let (seconds, first) = (number("GROUNDPLAN_FUZZ_SECONDS", 60), number("GROUNDPLAN_FUZZ_SEED", 1_000_000));
     let end = Instant::now() + Duration::from_secs(seconds);
     let mut seed = first;
     while Instant::now() < end {

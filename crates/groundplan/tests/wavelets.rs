@@ -10,36 +10,16 @@ fn found(signal: &[f64]) -> Vec<Peak> {
 fn signal(seed: u64, peaks: &[(f64, f64, f64)]) -> Vec<f64> {
     // Noise enough like chance, the same everywhere.
     let noise = |n: f64| (43_758.545 * libm::sin(n * 12.9898 + seed as f64 * 78.233)).rem_euclid(1.0) * 0.2;
-    let at = |n: f64| {
-        peaks
-            .iter()
-            .map(|(bin, high, wide)| high * (-0.5 * ((n - bin) / wide).powi(2)).exp())
-            .sum::<f64>()
-    };
-    (0..900)
-        .map(|n| {
-            if (110..790).contains(&n) {
-                noise(f64::from(n)) + at(f64::from(n))
-            } else {
-                0.0
-            }
-        })
-        .collect()
+    let at =
+        |n: f64| peaks.iter().map(|(bin, high, wide)| high * (-0.5 * ((n - bin) / wide).powi(2)).exp()).sum::<f64>();
+    (0..900).map(|n| if (110..790).contains(&n) { noise(f64::from(n)) + at(f64::from(n)) } else { 0.0 }).collect()
 }
 
-const PEAKS: &[(f64, f64, f64)] = &[
-    (120.3, 10.0, 1.2),
-    (300.7, 8.0, 2.5),
-    (340.2, 12.0, 1.0),
-    (700.4, 20.0, 4.0),
-];
+const PEAKS: &[(f64, f64, f64)] = &[(120.3, 10.0, 1.2), (300.7, 8.0, 2.5), (340.2, 12.0, 1.0), (700.4, 20.0, 4.0)];
 
 #[test]
 fn peaks_are_found_where_they_are() {
-    let strong: Vec<Peak> = found(&signal(1, PEAKS))
-        .into_iter()
-        .filter(|p| p.response > 8.0)
-        .collect();
+    let strong: Vec<Peak> = found(&signal(1, PEAKS)).into_iter().filter(|p| p.response > 8.0).collect();
     assert_eq!(strong.len(), PEAKS.len());
     for (peak, (bin, _, _)) in strong.iter().zip(PEAKS) {
         assert!((peak.bin as f64 - bin).abs() <= 1.0, "{} and not {bin}", peak.bin);
@@ -54,13 +34,7 @@ fn a_shifted_signal_has_its_peaks_shifted() {
         let shift = 1 + 7 * seed as usize;
         let mut shifted = vec![0.0; shift];
         shifted.extend(&signal);
-        let moved: Vec<Peak> = found(&signal)
-            .into_iter()
-            .map(|p| Peak {
-                bin: p.bin + shift,
-                ..p
-            })
-            .collect();
+        let moved: Vec<Peak> = found(&signal).into_iter().map(|p| Peak { bin: p.bin + shift, ..p }).collect();
         assert_eq!(found(&shifted), moved, "seed {seed}");
     }
 }
@@ -71,17 +45,9 @@ fn a_signal_turned_about_has_the_same_strong_peaks() {
         let signal = signal(seed, PEAKS);
         let turned: Vec<f64> = signal.iter().rev().copied().collect();
         let strong = |signal: &[f64]| -> Vec<usize> {
-            found(signal)
-                .iter()
-                .filter(|p| p.response > 8.0)
-                .map(|p| p.bin)
-                .collect()
+            found(signal).iter().filter(|p| p.response > 8.0).map(|p| p.bin).collect()
         };
-        let back: Vec<usize> = strong(&turned)
-            .into_iter()
-            .rev()
-            .map(|bin| signal.len() - 1 - bin)
-            .collect();
+        let back: Vec<usize> = strong(&turned).into_iter().rev().map(|bin| signal.len() - 1 - bin).collect();
         assert_eq!(strong(&signal), back, "seed {seed}");
     }
 }

@@ -96,11 +96,7 @@ fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
             kept.extend(family.strips(&columns, range, candidate.strip.across));
         }
     }
-    kept.sort_by(|a, b| {
-        a.middle()
-            .total_cmp(&b.middle())
-            .then(a.along[0].total_cmp(&b.along[0]))
-    });
+    kept.sort_by(|a, b| a.middle().total_cmp(&b.middle()).then(a.along[0].total_cmp(&b.along[0])));
     kept
 }
 
@@ -124,11 +120,7 @@ impl<'a> Family<'a> {
             view,
             parameters: evidence.parameters,
             offsets: view.lines.iter().map(|&n| evidence.lines.offsets[n]).collect(),
-            sides: view
-                .covered
-                .iter()
-                .map(|covered| Side::new(covered, view.cell))
-                .collect(),
+            sides: view.covered.iter().map(|covered| Side::new(covered, view.cell)).collect(),
         }
     }
 
@@ -163,10 +155,7 @@ impl<'a> Family<'a> {
             .collect();
         let sides = [&self.sides[low], &self.sides[high]];
         let margin = MARGIN.min(0.2 * width);
-        let beyond = [
-            [across[0] - BESIDE.1, across[0] - BESIDE.0],
-            [across[1] + BESIDE.0, across[1] + BESIDE.1],
-        ];
+        let beyond = [[across[0] - BESIDE.1, across[0] - BESIDE.0], [across[1] + BESIDE.0, across[1] + BESIDE.1]];
         let view = self.view;
         let holds = |n: usize, c: usize| sides[n].walls[c] || view.blocked(c, beyond[n][0], beyond[n][1]) > BEYOND;
         (0..view.size[0])
@@ -183,10 +172,7 @@ impl<'a> Family<'a> {
     /// The columns of a strip.
     fn range(&self, strip: &Strip) -> (usize, usize) {
         let half = self.view.cell / 2.0;
-        (
-            self.view.column(strip.along[0] + half),
-            self.view.column(strip.along[1] - half) + 1,
-        )
+        (self.view.column(strip.along[0] + half), self.view.column(strip.along[1] - half) + 1)
     }
 
     /// What stronger rivals leave of a strip's columns.
@@ -198,9 +184,7 @@ impl<'a> Family<'a> {
             let beside = shared.abs() < INNER && !self.parts(strip, rival);
             if shared > RIVAL * strip.width().min(rival.width()) || beside {
                 let cut = self.range(rival);
-                let pieces = left
-                    .into_iter()
-                    .flat_map(|(a, b)| [(a, b.min(cut.0)), (a.max(cut.1), b)]);
+                let pieces = left.into_iter().flat_map(|(a, b)| [(a, b.min(cut.0)), (a.max(cut.1), b)]);
                 left = pieces.filter(|(a, b)| a < b).collect();
             }
         }
@@ -209,18 +193,10 @@ impl<'a> Family<'a> {
 
     /// True when enough structure lies between two strips side by side to part them.
     fn parts(&self, one: &Strip, two: &Strip) -> bool {
-        let (below, above) = if one.middle() < two.middle() {
-            (one, two)
-        } else {
-            (two, one)
-        };
+        let (below, above) = if one.middle() < two.middle() { (one, two) } else { (two, one) };
         let border = [below.across[1], above.across[0]];
         let (low, high) = (border[0].min(border[1]) - 1e-6, border[0].max(border[1]) + 1e-6);
-        let between = self
-            .offsets
-            .iter()
-            .zip(&self.sides)
-            .filter(|(o, _)| (low..=high).contains(*o));
+        let between = self.offsets.iter().zip(&self.sides).filter(|(o, _)| (low..=high).contains(*o));
         let lines: Vec<&Side> = between.map(|(_, side)| side).collect();
         let (p, q) = (self.range(one), self.range(two));
         let (from, to) = (p.0.max(q.0), p.1.min(q.1));
@@ -232,9 +208,7 @@ impl<'a> Family<'a> {
     /// against it, each as long as that holds.
     fn strips(&self, columns: &[Column], range: std::ops::Range<usize>, across: [f64; 2]) -> Vec<Strip> {
         let scores: Vec<f64> = columns[range.clone()].iter().map(|c| c.score()).collect();
-        let pieces = best_pieces(&scores)
-            .into_iter()
-            .map(|(from, to)| (range.start + from, range.start + to));
+        let pieces = best_pieces(&scores).into_iter().map(|(from, to)| (range.start + from, range.start + to));
         let view = self.view;
         let strip = |(from, to): (usize, usize)| Strip {
             direction: view.direction,
@@ -242,10 +216,7 @@ impl<'a> Family<'a> {
             across,
             score: scores[from - range.start..to - range.start].iter().sum::<f64>() * view.cell,
         };
-        pieces
-            .filter(|&(from, to)| self.is_corridor(&columns[from..to], across[1] - across[0]))
-            .map(strip)
-            .collect()
+        pieces.filter(|&(from, to)| self.is_corridor(&columns[from..to], across[1] - across[0])).map(strip).collect()
     }
 
     /// Long enough, walled enough, and walled by more than posts.
@@ -289,11 +260,7 @@ impl Side {
             }
             flags
         };
-        Self {
-            walls: joined(BAY, SHORTEST_SIDE),
-            near: joined(BAY / 2.0, 0.0),
-            faces: joined(FACE_GAP, FACE),
-        }
+        Self { walls: joined(BAY, SHORTEST_SIDE), near: joined(BAY / 2.0, 0.0), faces: joined(FACE_GAP, FACE) }
     }
 }
 
@@ -348,12 +315,7 @@ fn best_pieces(scores: &[f64]) -> Vec<(usize, usize)> {
         if score <= 0.0 {
             continue;
         }
-        let mut piece = Piece {
-            from: n,
-            to: n + 1,
-            before,
-            after: sum,
-        };
+        let mut piece = Piece { from: n, to: n + 1, before, after: sum };
         while let Some(place) = pieces.iter().rposition(|other| other.before < piece.before) {
             if pieces[place].after >= piece.after {
                 break;

@@ -34,9 +34,7 @@ pub fn find(views: &[Turned], strips: &[Strip]) -> Vec<Meeting> {
         for b in a + 1..strips.len() {
             if strips[a].direction != strips[b].direction
                 && let Some(meeting) = meet(views, strips, [a, b])
-                && found
-                    .iter()
-                    .all(|other| crate::subdivision::distance(other.at, meeting.at) > SAME)
+                && found.iter().all(|other| crate::subdivision::distance(other.at, meeting.at) > SAME)
             {
                 found.push(meeting);
             }
@@ -90,12 +88,7 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
         (1, 1) => JunctionKind::L,
         _ => return None,
     };
-    Some(Meeting {
-        kind,
-        at,
-        corridors: pair,
-        reach,
-    })
+    Some(Meeting { kind, at, corridors: pair, reach })
 }
 
 /// A corridor's end is looked for so far beyond its walls, metres.
@@ -131,18 +124,12 @@ fn closed(view: &Turned, strip: &Strip, side: usize, sign: f64) -> Option<f64> {
     let cells = |metres: f64| (metres / view.cell).ceil() as i64;
     let last = view.size[0] as i64 - 1;
     let start = view.column(strip.along[side] - 0.5 * sign * view.cell) as i64;
-    let columns = (0..=cells(LOOK))
-        .map(|step| start + step * sign as i64)
-        .filter(|c| (0..=last).contains(c));
+    let columns = (0..=cells(LOOK)).map(|step| start + step * sign as i64).filter(|c| (0..=last).contains(c));
     let margin = 0.2 * strip.width();
     let (low, high) = (strip.across[0] + margin, strip.across[1] - margin);
-    let first = columns
-        .into_iter()
-        .find(|&c| view.blocked(c as usize, low, high) > IMPASSABLE)?;
+    let first = columns.into_iter().find(|&c| view.blocked(c as usize, low, high) > IMPASSABLE)?;
     // A wall that is not quite square to the corridor shows in several columns.
-    let deep = (-cells(DEEP)..=cells(DEEP))
-        .map(|step| first + step)
-        .filter(|c| (0..=last).contains(c));
+    let deep = (-cells(DEEP)..=cells(DEEP)).map(|step| first + step).filter(|c| (0..=last).contains(c));
     let across: f64 = deep.map(|c| view.occupied(c as usize, low, high)).sum();
     (across >= ACROSS).then(|| view.along(first as usize) + if sign < 0.0 { view.cell } else { 0.0 })
 }

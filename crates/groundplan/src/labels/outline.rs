@@ -16,9 +16,7 @@ pub fn rings(subdivision: &Subdivision, faces: &[u32]) -> Vec<Vec<[f64; 2]>> {
         for (n, &edge) in subdivision.face_edges[range].iter().enumerate() {
             let [l, r] = subdivision.edge_faces[edge as usize];
             if !is_inside(if l == face { r } else { l }) {
-                next.entry(vertices[n])
-                    .or_default()
-                    .push(vertices[(n + 1) % vertices.len()]);
+                next.entry(vertices[n]).or_default().push(vertices[(n + 1) % vertices.len()]);
             }
         }
     }
@@ -40,29 +38,20 @@ pub fn rings(subdivision: &Subdivision, faces: &[u32]) -> Vec<Vec<[f64; 2]>> {
             ring.push(to);
             at = to;
         }
-        rings.push(straight(
-            ring.iter().map(|&v| subdivision.vertices[v as usize]).collect(),
-        ));
+        rings.push(straight(ring.iter().map(|&v| subdivision.vertices[v as usize]).collect()));
     }
     rings
 }
 
 /// The outer ring with the largest area.
 pub fn polygon(subdivision: &Subdivision, faces: &[u32]) -> Vec<[f64; 2]> {
-    rings(subdivision, faces)
-        .into_iter()
-        .max_by(|a, b| area(a).total_cmp(&area(b)))
-        .unwrap_or_default()
+    rings(subdivision, faces).into_iter().max_by(|a, b| area(a).total_cmp(&area(b))).unwrap_or_default()
 }
 
 /// Signed area of a ring.
 pub fn area(ring: &[[f64; 2]]) -> f64 {
     let next = ring.iter().cycle().skip(1);
-    ring.iter()
-        .zip(next)
-        .map(|(p, q)| p[0] * q[1] - q[0] * p[1])
-        .sum::<f64>()
-        / 2.0
+    ring.iter().zip(next).map(|(p, q)| p[0] * q[1] - q[0] * p[1]).sum::<f64>() / 2.0
 }
 
 fn leftmost(subdivision: &Subdivision, from: u32, at: u32, ways: &[u32]) -> usize {
@@ -70,9 +59,7 @@ fn leftmost(subdivision: &Subdivision, from: u32, at: u32, ways: &[u32]) -> usiz
     let towards = |p: [f64; 2], q: [f64; 2]| libm::atan2(q[1] - p[1], q[0] - p[0]);
     let heading = towards(point(from), point(at));
     let turn = |way: &u32| crate::grid::turned(towards(point(at), point(*way)) - heading);
-    (0..ways.len())
-        .max_by(|&a, &b| turn(&ways[a]).total_cmp(&turn(&ways[b])))
-        .unwrap_or(0)
+    (0..ways.len()).max_by(|&a, &b| turn(&ways[a]).total_cmp(&turn(&ways[b]))).unwrap_or(0)
 }
 
 /// Leaves out points between neighbours that lie on one straight line with them.

@@ -27,9 +27,7 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
 /// neighbours, X with four.
 fn junctions(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
     let shares = |i: u32, l: u32, k: u32| {
-        nodes[l as usize]
-            .iter()
-            .any(|(n, _)| *n != i && nodes[k as usize].iter().any(|(m, _)| m == n))
+        nodes[l as usize].iter().any(|(n, _)| *n != i && nodes[k as usize].iter().any(|(m, _)| m == n))
     };
     let mut found = Vec::new();
     for (i, neighbours) in nodes.iter().enumerate() {
@@ -65,13 +63,7 @@ fn corridors(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
             return None;
         };
         let (one, two) = (edge_of(one), edge_of(two));
-        let heading = |e: usize| {
-            evidence
-                .lines
-                .directions
-                .get(subdivision.edge_lines[e] as usize)
-                .copied()
-        };
+        let heading = |e: usize| evidence.lines.directions.get(subdivision.edge_lines[e] as usize).copied();
         (heading(two)? == heading(one)?).then_some([one, two])
     };
     let ends: Vec<Option<[usize; 2]>> = (0..nodes.len()).map(matches).collect();
@@ -95,11 +87,8 @@ fn corridors(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
         }
         faces.sort_unstable();
         let edges: Vec<usize> = faces.iter().filter_map(|&f| ends[f as usize]).flatten().collect();
-        let outer: Vec<usize> = edges
-            .iter()
-            .copied()
-            .filter(|e| edges.iter().filter(|o| *o == e).count() == 1)
-            .collect();
+        let outer: Vec<usize> =
+            edges.iter().copied().filter(|e| edges.iter().filter(|o| *o == e).count() == 1).collect();
         let [first, last] = outer[..] else { continue };
         let axis = [middle(subdivision, first), middle(subdivision, last)].map(|p| p.map(tidy));
         let area: f64 = faces.iter().map(|&f| subdivision.areas[f as usize]).sum();

@@ -12,9 +12,7 @@ const ALONE: f64 = 4.0;
 const NICHE: f64 = 1.5;
 
 pub fn find(evidence: &Evidence) -> Vec<Label> {
-    let views: Vec<Turned> = (0..evidence.directions.angles.len())
-        .map(|d| Turned::new(evidence, d))
-        .collect();
+    let views: Vec<Turned> = (0..evidence.directions.angles.len()).map(|d| Turned::new(evidence, d)).collect();
     let (strips, meetings) = connected(&views, corridors::find(evidence, &views));
     let mut extents = extents(&views, &strips, &meetings);
     let ends = junctions::ends(&views, &strips, &meetings);
@@ -42,11 +40,7 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
         let strip = &strips[n];
         let view = &views[strip.direction];
         let inwards = if side == 0 { strip.width() } else { -strip.width() };
-        let polygon = rectangle(
-            view,
-            [place.min(place + inwards), place.max(place + inwards)],
-            strip.across,
-        );
+        let polygon = rectangle(view, [place.min(place + inwards), place.max(place + inwards)], strip.across);
         junctions.push(Label::Junction {
             kind: JunctionKind::End,
             faces: take(evidence, &mut free, &polygon),
@@ -76,10 +70,7 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
         let meetings = junctions::find(views, &strips);
         let leads = |n: usize| {
             let met = meetings.iter().filter(|m| m.corridors.contains(&n));
-            let reach = met
-                .clone()
-                .map(|m| m.reach[usize::from(m.corridors[1] == n)])
-                .sum::<f64>();
+            let reach = met.clone().map(|m| m.reach[usize::from(m.corridors[1] == n)]).sum::<f64>();
             let beyond = strips[n].length() - reach;
             match met.count() {
                 0 => strips[n].length() >= ALONE * strips[n].width(),
@@ -130,9 +121,7 @@ fn square(views: &[Turned], strips: &[Strip], meeting: &Meeting) -> Vec<[f64; 2]
 
 /// A rectangle in a direction's own places, as a polygon in the map frame.
 fn rectangle(view: &Turned, along: [f64; 2], across: [f64; 2]) -> Vec<[f64; 2]> {
-    [[0, 0], [1, 0], [1, 1], [0, 1]]
-        .map(|[u, v]| view.to_map([along[u], across[v]]).map(tidy))
-        .to_vec()
+    [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[u, v]| view.to_map([along[u], across[v]]).map(tidy)).to_vec()
 }
 
 /// Takes the faces whose centres lie in a convex polygon out of those that are free.
@@ -146,8 +135,5 @@ fn take(evidence: &Evidence, free: &mut Vec<u32>, polygon: &[[f64; 2]]) -> Vec<u
 /// True when a counter-clockwise convex polygon holds the point.
 fn holds(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let next = polygon.iter().cycle().skip(1);
-    polygon
-        .iter()
-        .zip(next)
-        .all(|(p, q)| (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) >= 0.0)
+    polygon.iter().zip(next).all(|(p, q)| (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) >= 0.0)
 }

@@ -11,6 +11,9 @@ const CELL: f64 = 0.1;
 /// Pixels this near to a line lie on it, metres, or at least so many pixels.
 const NEAR: (f64, f64) = (0.12, 2.0);
 
+/// Lines with less than this share of a strong line's structure are no sides of corridors: the faces of single goods.
+const STRONG: f64 = 0.3;
+
 /// One direction's view of the map. Places along it (u) and across it (v) are metres in the map frame turned by the
 /// direction: u = p.t with t = (cos, sin), v = p.n with n = (-sin, cos).
 pub struct Turned {
@@ -69,11 +72,7 @@ impl Turned {
         let frame = &evidence.grid.frame;
         let (nu, nv) = (self.size[0], self.size[1]);
         let rows: Vec<&[u8]> = (0..frame.height).map(|y| evidence.grid.row(y)).collect();
-        let counts = evidence
-            .grid
-            .table
-            .states
-            .map(|s| [u32::from(s != State::Free), u32::from(s == State::Occupied)]);
+        let counts = evidence.grid.table.states.map(|s| [u32::from(s != State::Free), u32::from(s == State::Occupied)]);
         let per_side = f64::from(self.samples).sqrt();
         // Steps on the grid, in pixels, of one sample along and across.
         let origin = frame.to_pixels(self.point(0.0, 0.0));
@@ -97,11 +96,8 @@ impl Turned {
                             let y = origin[1] + a * along[1] + b * across[1];
                             let inside =
                                 x >= 0.0 && y >= 0.0 && (x as usize) < frame.width && (y as usize) < frame.height;
-                            let [blocked, occupied] = if inside {
-                                counts[usize::from(rows[y as usize][x as usize])]
-                            } else {
-                                [1, 0]
-                            };
+                            let [blocked, occupied] =
+                                if inside { counts[usize::from(rows[y as usize][x as usize])] } else { [1, 0] };
                             sum[0] += blocked;
                             sum[1] += occupied;
                         }
@@ -117,22 +113,17 @@ impl Turned {
     fn cover_lines(&mut self, evidence: &Evidence) {
         let frame = &evidence.grid.frame;
         let lines = evidence.lines;
+        let strong = STRONG * lines.typical_amplitude();
         self.lines = (0..lines.len())
-            .filter(|&n| lines.directions[n] as usize == self.direction)
+            .filter(|&n| lines.directions[n] as usize == self.direction && lines.amplitudes[n] >= strong)
             .collect();
-        self.lines
-            .sort_by(|&a, &b| lines.offsets[a].total_cmp(&lines.offsets[b]));
+        self.lines.sort_by(|&a, &b| lines.offsets[a].total_cmp(&lines.offsets[b]));
         self.covered = vec![vec![false; self.size[0]]; self.lines.len()];
         let near = NEAR.0.max(NEAR.1 * frame.resolution);
         let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
         let on_grid = frame.angle_to_grid(self.angle);
         let gradients = evidence.gradients;
-        for ((pixel, &along), &magnitude) in gradients
-            .pixels
-            .iter()
-            .zip(&gradients.angles)
-            .zip(&gradients.magnitudes)
-        {
+        for ((pixel, &along), &magnitude) in gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes) {
             if weight(f64::from(along), magnitude, on_grid, tolerance, true) == 0 {
                 continue;
             }

@@ -60,12 +60,7 @@ impl Case {
     /// A map of `width` by `height` pixels of one metre, without lines.
     pub fn new(width: usize, height: usize) -> Self {
         let frame = Frame::new(width, height, 1.0, [0.0; 3]);
-        Self {
-            frame,
-            angles: Vec::new(),
-            directions: Vec::new(),
-            offsets: Vec::new(),
-        }
+        Self { frame, angles: Vec::new(), directions: Vec::new(), offsets: Vec::new() }
     }
 
     /// A direction more, in degrees; its id.
@@ -89,10 +84,7 @@ impl Case {
         let (a, b) = ((-libm::sin(grid) * scale).round(), (libm::cos(grid) * scale).round());
         // Turned by pi, the normal points the other way.
         let same_way = libm::cos(angle - self.frame.angle_to_map(grid)).signum();
-        self.line(
-            direction,
-            same_way * self.frame.offset_to_map(grid, (a * x + b * y) / scale),
-        );
+        self.line(direction, same_way * self.frame.offset_to_map(grid, (a * x + b * y) / scale));
     }
 
     /// The case of a seed: few pixels, up to six families, lines that meet in points and graze the border.
@@ -107,11 +99,7 @@ impl Case {
         let (w, h) = (width as f64, height as f64);
         let mut case = Self::new(width as usize, height as usize);
         if random.below(4) == 0 {
-            let origin = [
-                random.between(-100.0, 100.0),
-                random.between(-100.0, 100.0),
-                random.between(-4.0, 4.0),
-            ];
+            let origin = [random.between(-100.0, 100.0), random.between(-100.0, 100.0), random.between(-4.0, 4.0)];
             case.frame = Frame::new(case.frame.width, case.frame.height, 0.05, origin);
         }
         let diagonal = h.atan2(w).to_degrees();
@@ -119,9 +107,7 @@ impl Case {
         for _ in 0..=random.below(6) {
             let turn = random.pick(&[0.5, 1e-3, 1e-6, 1e-7, 90.0, 60.0]);
             let half_slope = 0.5f64.atan().to_degrees();
-            let degrees = random.pick(&[
-                0.0, -90.0, 45.0, -45.0, 1e-6, 89.999_999, 30.0, 17.0, half_slope, diagonal,
-            ]);
+            let degrees = random.pick(&[0.0, -90.0, 45.0, -45.0, 1e-6, 89.999_999, 30.0, 17.0, half_slope, diagonal]);
             let degrees = if random.below(3) == 0 { first + turn } else { degrees };
             case.family(degrees);
         }
@@ -160,10 +146,7 @@ impl Case {
         };
         let arrangement = arrange(&self.frame, &self.angles, &lines);
         let subdivision = Subdivision::new(&self.frame, &arrangement);
-        Arranged {
-            arrangement,
-            subdivision,
-        }
+        Arranged { arrangement, subdivision }
     }
 
     /// Arranges the lines and looks for everything that could be wrong; pixels too where the map is small.
@@ -187,9 +170,7 @@ impl Case {
     fn check_pixels(&self, arrangement: &Arrangement) -> Result<(), String> {
         let (width, height) = (self.frame.width, self.frame.height);
         let mut random = Random(0);
-        let pixels: Vec<u8> = (0..width * height)
-            .map(|_| random.pick(&[0, 0, 205, 254, 255]))
-            .collect();
+        let pixels: Vec<u8> = (0..width * height).map(|_| random.pick(&[0, 0, 205, 254, 255])).collect();
         let table = Table::trinary();
         let grid = Grid::new(&pixels, false, &table, self.frame);
         let crossing = crossing_lines(&self.frame, &arrangement.lines);
@@ -216,14 +197,7 @@ impl Case {
         let share = |part: u64, of: u64| (part as f64 / of as f64 * 1e6).round();
         let mut expected: Vec<[f64; 4]> = sums
             .values()
-            .map(|s| {
-                [
-                    s[0] as f64,
-                    share(s[1], 100 * s[0]),
-                    share(s[2], s[0]),
-                    share(s[3], s[0]),
-                ]
-            })
+            .map(|s| [s[0] as f64, share(s[1], 100 * s[0]), share(s[2], s[0]), share(s[3], s[0])])
             .collect();
         let millionths = |share: f64| (share * 1e6).round();
         let mut counted: Vec<[f64; 4]> = (0..found.pixels.len())
@@ -236,18 +210,11 @@ impl Case {
         let order = |p: &[f64; 4], q: &[f64; 4]| p.partial_cmp(q).unwrap_or(std::cmp::Ordering::Equal);
         expected.sort_by(order);
         counted.sort_by(order);
-        if expected == counted {
-            Ok(())
-        } else {
-            Err(format!("faces hold {counted:?} and not {expected:?}"))
-        }
+        if expected == counted { Ok(()) } else { Err(format!("faces hold {counted:?} and not {expected:?}")) }
     }
 
     fn occupancy(&self, grid: &Grid, arrangement: &Arrangement, threads: usize) -> Occupancy {
-        let directions = Directions {
-            angles: self.angles.clone(),
-            ..Directions::default()
-        };
+        let directions = Directions { angles: self.angles.clone(), ..Directions::default() };
         let lines = Lines {
             directions: self.directions.clone(),
             offsets: self.offsets.clone(),
@@ -291,10 +258,8 @@ fn crossing(p: [i128; 3], q: [i128; 3]) -> Option<[i128; 3]> {
 
 /// Vertices, edges and faces as they follow from the lines' crossings, counted one by one.
 fn check_counts(frame: &Frame, arrangement: &Arrangement) -> Result<(), String> {
-    let lines: Vec<[i128; 3]> = crossing_lines(frame, &arrangement.lines)
-        .iter()
-        .map(|l| [l.a, l.b, l.c].map(i128::from))
-        .collect();
+    let lines: Vec<[i128; 3]> =
+        crossing_lines(frame, &arrangement.lines).iter().map(|l| [l.a, l.b, l.c].map(i128::from)).collect();
     let (w, h) = (frame.width as i128, frame.height as i128);
     let mut inner: BTreeMap<[i128; 3], BTreeSet<usize>> = BTreeMap::new();
     for (n, &p) in lines.iter().enumerate() {
@@ -317,21 +282,10 @@ fn check_counts(frame: &Frame, arrangement: &Arrangement) -> Result<(), String> 
         }
     }
     let through: usize = inner.values().map(BTreeSet::len).sum();
-    let expected = [
-        inner.len() + border.len(),
-        lines.len() + through + border.len(),
-        1 + lines.len() + through - inner.len(),
-    ];
-    let found = [
-        arrangement.vertices.len(),
-        arrangement.edges.len(),
-        arrangement.face_starts.len(),
-    ];
-    if found == expected {
-        Ok(())
-    } else {
-        Err(format!("vertices, edges, faces are {found:?} and not {expected:?}"))
-    }
+    let expected =
+        [inner.len() + border.len(), lines.len() + through + border.len(), 1 + lines.len() + through - inner.len()];
+    let found = [arrangement.vertices.len(), arrangement.edges.len(), arrangement.face_starts.len()];
+    if found == expected { Ok(()) } else { Err(format!("vertices, edges, faces are {found:?} and not {expected:?}")) }
 }
 
 /// Every half-edge is the next of exactly one, starts where that one ends, and has the same face on its left.
@@ -372,10 +326,7 @@ fn check_chains(arrangement: &Arrangement) -> Result<(), String> {
             if b * (q[0] - p[0]) - a * (q[1] - p[1]) < -1e-9 * (a.abs() + b.abs()) {
                 return Err(format!("edge {edge} runs backwards along line {n}"));
             }
-            if [p, q]
-                .iter()
-                .any(|p| (a * p[0] + b * p[1] - c).abs() > 1e-6 * (a.abs() + b.abs()))
-            {
+            if [p, q].iter().any(|p| (a * p[0] + b * p[1] - c).abs() > 1e-6 * (a.abs() + b.abs())) {
                 return Err(format!("edge {edge} does not lie on line {n}"));
             }
         }
