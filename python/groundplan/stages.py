@@ -303,7 +303,7 @@ def record(stage: Stage) -> dict[str, Any]:
     return {f.name: getattr(stage, f.name) for f in fields(stage)}  # type: ignore[arg-type]
 
 
-def layout(map: Map) -> _core.Layout:
+def layout(map: Map) -> _core._Layout:
     """A map as the core takes it, without copying its pixels where their rows follow one another."""
     pixels = map.pixels
     bottom_up = pixels.ndim == 2 and pixels.strides[0] < 0
