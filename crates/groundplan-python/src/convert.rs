@@ -411,6 +411,29 @@ pub fn from_labels<'py>(py: Python<'py>, made: &[Label]) -> PyResult<Vec<Bound<'
                 .with("polygon", polygon)?
                 .with("at", at)?
                 .with("corridors", corridors)?,
+            Label::Region { purpose, faces, polygon, holes, at, area, name } => named
+                .with("kind", "region")?
+                .with("use", purpose.name())?
+                .with("faces", faces)?
+                .with("polygon", polygon)?
+                .with("holes", holes)?
+                .with("at", at)?
+                .with("area", *area)?
+                .with("name", name)?,
+            Label::Door { at, axis, width, between } => named
+                .with("kind", "door")?
+                .with("at", at)?
+                .with("axis", axis)?
+                .with("width", *width)?
+                .with("between", between)?,
+            Label::Rack { faces, polygon, axis, width, name } => named
+                .with("kind", "rack")?
+                .with("faces", faces)?
+                .with("polygon", polygon)?
+                .with("axis", axis)?
+                .with("width", *width)?
+                .with("name", name)?,
+            Label::Pillar { at, width } => named.with("kind", "pillar")?.with("at", at)?.with("width", *width)?,
         };
         Ok(named.done())
     };

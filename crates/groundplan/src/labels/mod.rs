@@ -74,6 +74,77 @@ pub enum Label {
         /// Ids of the corridors that meet here.
         corridors: Vec<u32>,
     },
+    /// A piece of free space that walls and doors set apart.
+    Region {
+        /// What it is for.
+        purpose: Purpose,
+        /// Faces that lie in it.
+        faces: Vec<u32>,
+        /// Its outline, counter-clockwise, metres.
+        polygon: Vec<[f64; 2]>,
+        /// What lies within the outline and is not of it, clockwise.
+        holes: Vec<Vec<[f64; 2]>>,
+        /// A point in it, far from its walls.
+        at: [f64; 2],
+        /// Free space, square metres.
+        area: f64,
+        /// Such as R07.
+        name: String,
+    },
+    /// A way from one region into another.
+    Door {
+        /// Its middle.
+        at: [f64; 2],
+        /// Its two jambs.
+        axis: [[f64; 2]; 2],
+        /// Its free width, metres.
+        width: f64,
+        /// Ids of the two regions.
+        between: [u32; 2],
+    },
+    /// A row that is taken, between ways.
+    Rack {
+        /// Faces that lie in it.
+        faces: Vec<u32>,
+        /// Its outline, counter-clockwise, metres.
+        polygon: Vec<[f64; 2]>,
+        /// Its centre line, end to end.
+        axis: [[f64; 2]; 2],
+        /// How deep it is, face to face, metres.
+        width: f64,
+        /// Such as S02.
+        name: String,
+    },
+    /// Something small that stands by itself and recurs.
+    Pillar {
+        /// Its middle.
+        at: [f64; 2],
+        /// How wide it is, metres.
+        width: f64,
+    },
+}
+
+/// What a region is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Of one piece.
+    Room,
+    /// Long, and led into from its sides.
+    Corridor,
+    /// Large.
+    Hall,
+}
+
+impl Purpose {
+    /// Its name in the survey.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Room => "room",
+            Self::Corridor => "corridor",
+            Self::Hall => "hall",
+        }
+    }
 }
 
 /// What the labels are found from.
