@@ -2,8 +2,10 @@
 
 mod corridors;
 mod junctions;
+mod names;
 mod outline;
 mod paper;
+mod racks;
 mod strips;
 mod turned;
 

@@ -2,6 +2,8 @@
 
 use super::corridors::{self, Strip};
 use super::junctions::{self, Meeting};
+use super::names::{Named, names};
+use super::racks::{self, Row};
 use super::turned::Turned;
 use super::{Evidence, JunctionKind, Label};
 use crate::grid::{State, tidy};
@@ -19,49 +21,75 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
     for &(n, side, place) in &ends {
         extents[n][side] = place;
     }
-    let mut free: Vec<u32> = (0..evidence.subdivision.faces() as u32)
-        .filter(|&face| evidence.occupancy.states[face as usize] == State::Free)
-        .collect();
-    let mut labels = Vec::new();
-    let mut junctions: Vec<Label> = meetings
+    let rows = racks::find(&views, &strips, &extents);
+
+    // A face is of one junction, or of one corridor, or of none.
+    let mut faces = Faces::new(evidence, |state| state == State::Free);
+    let junctions: Vec<Label> = meetings
         .iter()
-        .map(|meeting| {
-            let polygon = square(&views, &strips, meeting);
-            Label::Junction {
-                kind: meeting.kind,
-                faces: take(evidence, &mut free, &polygon),
-                polygon,
-                at: meeting.at.map(tidy),
-                corridors: meeting.corridors.map(|c| c as u32).to_vec(),
-            }
+        .map(|meeting| (meeting.kind, square(&views, &strips, meeting), meeting.at, meeting.corridors.to_vec()))
+        .chain(ends.iter().map(|&(n, side, place)| {
+            let (strip, view) = (&strips[n], &views[strips[n].direction]);
+            let inwards = if side == 0 { strip.width() } else { -strip.width() };
+            let along = [place.min(place + inwards), place.max(place + inwards)];
+            let at = view.to_map([place, strip.middle()]);
+            (JunctionKind::End, rectangle(view, along, strip.across), at, vec![n])
+        }))
+        .map(|(kind, polygon, at, corridors)| Label::Junction {
+            kind,
+            faces: faces.take(&polygon),
+            polygon,
+            at: at.map(tidy),
+            corridors: corridors.into_iter().map(|c| c as u32).collect(),
         })
         .collect();
-    for &(n, side, place) in &ends {
-        let strip = &strips[n];
-        let view = &views[strip.direction];
-        let inwards = if side == 0 { strip.width() } else { -strip.width() };
-        let polygon = rectangle(view, [place.min(place + inwards), place.max(place + inwards)], strip.across);
-        junctions.push(Label::Junction {
-            kind: JunctionKind::End,
-            faces: take(evidence, &mut free, &polygon),
-            polygon,
-            at: view.to_map([place, strip.middle()]).map(tidy),
-            corridors: vec![n as u32],
-        });
-    }
-    for (n, (strip, along)) in strips.iter().zip(&extents).enumerate() {
-        let view = &views[strip.direction];
-        let polygon = rectangle(view, *along, strip.across);
-        labels.push(Label::Corridor {
-            faces: take(evidence, &mut free, &polygon),
-            polygon,
-            axis: along.map(|u| view.to_map([u, strip.middle()]).map(tidy)),
-            width: tidy(strip.width()),
-            name: format!("A{:02}", n + 1),
-        });
-    }
+    let named = strips.iter().zip(&extents).map(|(strip, along)| Named {
+        direction: strip.direction,
+        across: strip.middle(),
+        along: f64::midpoint(along[0], along[1]),
+        weight: along[1] - along[0],
+    });
+    let names = names(&views, &named.collect::<Vec<_>>(), "A", "C");
+    let mut labels: Vec<Label> = strips
+        .iter()
+        .zip(&extents)
+        .zip(names)
+        .map(|((strip, along), name)| {
+            let view = &views[strip.direction];
+            let polygon = rectangle(view, *along, strip.across);
+            let axis = along.map(|u| view.to_map([u, strip.middle()]).map(tidy));
+            Label::Corridor { faces: faces.take(&polygon), polygon, axis, width: tidy(strip.width()), name }
+        })
+        .collect();
     labels.extend(junctions);
+    labels.extend(rack_labels(evidence, &views, &rows));
     labels
+}
+
+fn rack_labels(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Label> {
+    let mut faces = Faces::new(evidence, |_| true);
+    let named = rows.iter().map(|row| Named {
+        direction: row.direction,
+        across: f64::midpoint(row.across[0], row.across[1]),
+        along: f64::midpoint(row.along[0], row.along[1]),
+        weight: row.along[1] - row.along[0],
+    });
+    let names = names(views, &named.collect::<Vec<_>>(), "S", "S");
+    rows.iter()
+        .zip(names)
+        .map(|(row, name)| {
+            let view = &views[row.direction];
+            let polygon = rectangle(view, row.along, row.across);
+            let middle = f64::midpoint(row.across[0], row.across[1]);
+            Label::Rack {
+                faces: faces.take(&polygon),
+                polygon,
+                axis: row.along.map(|u| view.to_map([u, middle]).map(tidy)),
+                width: tidy(row.across[1] - row.across[0]),
+                name,
+            }
+        })
+        .collect()
 }
 
 /// A strip that leads nowhere is a niche: it goes, and what met it is judged again.
@@ -124,12 +152,25 @@ fn rectangle(view: &Turned, along: [f64; 2], across: [f64; 2]) -> Vec<[f64; 2]> 
     [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[u, v]| view.to_map([along[u], across[v]]).map(tidy)).to_vec()
 }
 
-/// Takes the faces whose centres lie in a convex polygon out of those that are free.
-fn take(evidence: &Evidence, free: &mut Vec<u32>, polygon: &[[f64; 2]]) -> Vec<u32> {
-    let centres = &evidence.subdivision.centres;
-    let (inside, outside) = free.iter().partition(|&&face| holds(polygon, centres[face as usize]));
-    *free = outside;
-    inside
+/// Faces that no label of a kind has yet.
+struct Faces<'a> {
+    centres: &'a [[f64; 2]],
+    left: Vec<u32>,
+}
+
+impl<'a> Faces<'a> {
+    fn new(evidence: &Evidence<'a>, of: impl Fn(State) -> bool) -> Self {
+        let states = evidence.occupancy.states.iter().enumerate();
+        let left = states.filter(|(_, state)| of(**state)).map(|(face, _)| face as u32).collect();
+        Self { centres: &evidence.subdivision.centres, left }
+    }
+
+    /// Takes the faces whose centres lie in a convex polygon.
+    fn take(&mut self, polygon: &[[f64; 2]]) -> Vec<u32> {
+        let (inside, outside) = self.left.iter().partition(|&&face| holds(polygon, self.centres[face as usize]));
+        self.left = outside;
+        inside
+    }
 }
 
 /// True when a counter-clockwise convex polygon holds the point.
