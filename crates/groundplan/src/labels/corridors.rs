@@ -70,6 +70,7 @@ const DENSE: f64 = 0.6;
 const LEAST_WALLED: f64 = 0.2;
 /// A corridor so many times as long as wide is a long one.
 const LONG: f64 = 4.5;
+const VERY_LONG: f64 = 6.5;
 /// Least share of a long corridor's walls that is more than posts, on one side at least.
 const FACED_LONG: f64 = 0.55;
 /// The same for a short one, which may be a row of empty bays: so much on one side, and on the other so much too, or
@@ -77,16 +78,22 @@ const FACED_LONG: f64 = 0.55;
 const FACED: f64 = 0.7;
 const FACED_TWICE: f64 = 0.4;
 const FACED_ONCE: f64 = 0.85;
+/// Posts that recur further apart than this are not those of bays, metres.
+const LONGEST_BAY: f64 = 4.5;
+/// A strip from so many to so many pitches wide may be a row of bays.
+const BAY_WIDTH: (f64, f64) = (0.65, 1.12);
+/// Share of its sides that is structure on both when it is none.
+const CLOSED_FRAMES: f64 = 0.6;
 /// Strips that overlap across by more than this share of the narrower one are rivals.
 const RIVAL: f64 = 0.25;
 
 /// Corridors along every direction, in the order of the directions and their places.
 pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
-    views.iter().flat_map(|view| along(evidence, view)).collect()
+    views.iter().flat_map(|view| along(evidence, views, view)).collect()
 }
 
-fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
-    let family = Family::new(evidence, view);
+fn along(evidence: &Evidence, views: &[Turned], view: &Turned) -> Vec<Strip> {
+    let family = Family::new(evidence, views, view);
     let mut candidates = family.candidates();
     candidates.sort_by(|a, b| b.strip.score.total_cmp(&a.strip.score));
     let mut kept: Vec<Strip> = Vec::new();
@@ -103,6 +110,8 @@ fn along(evidence: &Evidence, view: &Turned) -> Vec<Strip> {
 /// The lines of one direction as sides of strips.
 struct Family<'a> {
     view: &'a Turned,
+    /// Between the lines of posts of the rows that cross, metres: a strip as wide may be a row of empty bays.
+    pitches: Vec<f64>,
     parameters: &'a Parameters,
     offsets: Vec<f64>,
     sides: Vec<Side>,
@@ -115,8 +124,13 @@ struct Candidate {
 }
 
 impl<'a> Family<'a> {
-    fn new(evidence: &Evidence<'a>, view: &'a Turned) -> Self {
+    fn new(evidence: &Evidence<'a>, views: &[Turned], view: &'a Turned) -> Self {
+        let pitches = views.iter().filter(|other| other.direction != view.direction).filter_map(|other| {
+            let sine = libm::sin(other.angle - view.angle).abs();
+            other.pitch.filter(|&pitch| pitch <= LONGEST_BAY).map(|pitch| pitch * sine)
+        });
         Self {
+            pitches: pitches.collect(),
             view,
             parameters: evidence.parameters,
             offsets: view.lines.iter().map(|&n| evidence.lines.offsets[n]).collect(),
@@ -225,6 +239,12 @@ impl<'a> Family<'a> {
         let near = count(&|c| c.walled && c.near);
         let faced = |least: u8| count(&|c| c.walled && c.faces >= least);
         let length = columns.len() as f64 * self.view.cell;
+        // Between frames that are closed on both sides and go on and on, it is a cross aisle as wide as a bay.
+        let bay = self.pitches.iter().any(|pitch| (BAY_WIDTH.0 * pitch..=BAY_WIDTH.1 * pitch).contains(&width));
+        let aisle = length >= VERY_LONG * width || (length >= LONG * width && faced(2) >= CLOSED_FRAMES * near);
+        if bay && !aisle {
+            return false;
+        }
         let structured = if length >= LONG * width {
             faced(1) >= FACED_LONG * near
         } else {

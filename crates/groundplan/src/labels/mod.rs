@@ -5,6 +5,7 @@ mod junctions;
 mod names;
 mod outline;
 mod paper;
+mod pitch;
 mod racks;
 mod strips;
 mod turned;

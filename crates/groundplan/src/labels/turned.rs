@@ -12,7 +12,7 @@ const CELL: f64 = 0.1;
 const NEAR: (f64, f64) = (0.12, 2.0);
 
 /// Lines with less than this share of a strong line's structure are no sides of corridors: the faces of single goods.
-const STRONG: f64 = 0.3;
+const STRONG: f64 = 2.0;
 
 /// One direction's view of the map. Places along it (u) and across it (v) are metres in the map frame turned by the
 /// direction: u = p.t with t = (cos, sin), v = p.n with n = (-sin, cos).
@@ -31,6 +31,8 @@ pub struct Turned {
     sums: Vec<[u32; 2]>,
     /// Samples in a cell.
     samples: u32,
+    /// Distance from post to post along its lines, metres, where posts recur.
+    pub pitch: Option<f64>,
     /// Lines of the direction: their ids, ascending in offset.
     pub lines: Vec<usize>,
     /// For each of those lines, whether structure lies on it in each column.
@@ -60,11 +62,13 @@ impl Turned {
             size,
             sums: Vec::new(),
             samples: (side as u32).clamp(1, 3).pow(2),
+            pitch: None,
             lines: Vec::new(),
             covered: Vec::new(),
         };
         made.sum_blocked(evidence);
         made.cover_lines(evidence);
+        made.pitch = super::pitch::find(evidence, &made);
         made
     }
 
@@ -113,7 +117,7 @@ impl Turned {
     fn cover_lines(&mut self, evidence: &Evidence) {
         let frame = &evidence.grid.frame;
         let lines = evidence.lines;
-        let strong = STRONG * lines.typical_amplitude();
+        let strong = STRONG;
         self.lines = (0..lines.len())
             .filter(|&n| lines.directions[n] as usize == self.direction && lines.amplitudes[n] >= strong)
             .collect();
