@@ -41,6 +41,8 @@ impl Strip {
 
 /// A side's gap up to this long is an empty bay, metres.
 const BAY: f64 = 2.9;
+/// The gap of a missing post, in pitches.
+const MISSING: f64 = 2.1;
 /// Pieces of side shorter than this are specks, metres.
 const SHORTEST_SIDE: f64 = 0.25;
 /// Structure on a line within a strip blocks it when it is so long, with gaps of so much, metres.
@@ -129,12 +131,14 @@ impl<'a> Family<'a> {
             let sine = libm::sin(other.angle - view.angle).abs();
             other.pitch.filter(|&pitch| pitch <= LONGEST_BAY).map(|pitch| pitch * sine)
         });
+        // Where the bays are known, one post may be missing.
+        let bay = view.pitch.filter(|&pitch| pitch <= LONGEST_BAY).map_or(BAY, |pitch| BAY.max(MISSING * pitch));
         Self {
             pitches: pitches.collect(),
             view,
             parameters: evidence.parameters,
             offsets: view.lines.iter().map(|&n| evidence.lines.offsets[n]).collect(),
-            sides: view.covered.iter().map(|covered| Side::new(covered, view.cell)).collect(),
+            sides: view.covered.iter().map(|covered| Side::new(covered, view.cell, bay)).collect(),
         }
     }
 
@@ -268,7 +272,7 @@ struct Side {
 }
 
 impl Side {
-    fn new(covered: &[bool], cell: f64) -> Self {
+    fn new(covered: &[bool], cell: f64, bay: f64) -> Self {
         let cells = |metres: f64| (metres / cell) as usize;
         let joined = |gap: f64, shortest: f64| {
             let mut flags = covered.to_vec();
@@ -280,7 +284,7 @@ impl Side {
             }
             flags
         };
-        Self { walls: joined(BAY, SHORTEST_SIDE), near: joined(BAY / 2.0, 0.0), faces: joined(FACE_GAP, FACE) }
+        Self { walls: joined(bay, SHORTEST_SIDE), near: joined(BAY / 2.0, 0.0), faces: joined(FACE_GAP, FACE) }
     }
 }
 
