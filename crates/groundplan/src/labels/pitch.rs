@@ -53,15 +53,18 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     if strongest <= CONTRAST * levels[levels.len() / 2] {
         return None;
     }
-    let top = |lag: usize| (1..=4).all(|d| smooth[lag] >= smooth[lag - d] && smooth[lag] >= smooth[(lag + d).min(last)]);
+    let top =
+        |lag: usize| (1..=4).all(|d| smooth[lag] >= smooth[lag - d] && smooth[lag] >= smooth[(lag + d).min(last)]);
     range.into_iter().find(|&lag| top(lag) && smooth[lag] >= FUNDAMENTAL * strongest).map(|lag| lag as f64 * STEP)
 }
 
 /// For each line of the direction, the steps along it at which specks stand, ascending.
 fn specks(evidence: &Evidence, view: &Turned) -> Vec<Vec<i32>> {
     let lines = evidence.lines;
-    let mut offsets: Vec<f64> =
-        (0..lines.len()).filter(|&n| lines.directions[n] as usize == view.direction).map(|n| lines.offsets[n]).collect();
+    let mut offsets: Vec<f64> = (0..lines.len())
+        .filter(|&n| lines.directions[n] as usize == view.direction)
+        .map(|n| lines.offsets[n])
+        .collect();
     offsets.sort_by(f64::total_cmp);
     let mut places = vec![Vec::new(); offsets.len()];
     let frame = &evidence.grid.frame;

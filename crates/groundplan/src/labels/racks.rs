@@ -3,6 +3,7 @@
 //! A row is known by its two faces, be it half empty: it lies between neighbouring corridors of one direction, is cut
 //! where other corridors cross, and holds something.
 
+use super::Evidence;
 use super::corridors::Strip;
 use super::turned::Turned;
 
@@ -18,52 +19,110 @@ pub struct Row {
 }
 
 /// Two faces are this far apart, metres: less is a wall, more is a room.
-const DEPTH: (f64, f64) = (0.5, 6.0);
+const DEPTH: (f64, f64) = (0.5, 3.6);
 /// A row's piece is at least so long, metres.
 const SHORTEST: f64 = 1.2;
 /// Least share of a row that is taken.
 const TAKEN: f64 = 0.12;
+/// The same where no corridor runs along its other side.
+const TAKEN_OUTSIDE: f64 = 0.5;
+const SEEN_OUTSIDE: f64 = 0.5;
 /// Sides nearer than this are the same, metres.
 const SAME: f64 = 0.3;
 
-/// The rows between the corridors, in the order of the corridors.
-pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
+/// The rows between the corridors and at the outer sides of them, the longest first.
+pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
     let mut rows = Vec::new();
-    for (n, low) in strips.iter().enumerate() {
-        let view = &views[low.direction];
-        // What of its upper side no nearer corridor has taken yet.
-        let mut open = vec![(extents[n][0], extents[n][1])];
-        let mut above: Vec<usize> = (0..strips.len())
-            .filter(|&m| strips[m].direction == low.direction && strips[m].across[0] > low.across[1] - SAME && m != n)
-            .collect();
-        above.sort_by(|&a, &b| strips[a].across[0].total_cmp(&strips[b].across[0]));
-        for m in above {
-            let (high, reach) = (&strips[m], extents[m]);
-            let across = [low.across[1], high.across[0]];
-            let depth = across[1] - across[0];
-            if depth > DEPTH.1 {
-                break;
-            }
-            let shared: Vec<(f64, f64)> =
-                open.iter().map(|(a, b)| (a.max(reach[0]), b.min(reach[1]))).filter(|(a, b)| a < b).collect();
-            open = without(open, reach[0], reach[1]);
-            if depth < DEPTH.0 {
-                continue;
-            }
-            let mut pieces = shared;
-            for (k, crossing) in strips.iter().enumerate().filter(|(_, s)| s.direction != low.direction) {
+    for (n, strip) in strips.iter().enumerate() {
+        let view = &views[strip.direction];
+        let row = |across: [f64; 2], pieces: Vec<(f64, f64)>| {
+            let mut pieces = pieces;
+            for (k, crossing) in strips.iter().enumerate().filter(|(_, s)| s.direction != strip.direction) {
                 let [from, to] = crossed(view, &views[crossing.direction], crossing, extents[k], across);
                 pieces = without(pieces, from, to);
             }
-            rows.extend(
-                pieces
-                    .into_iter()
-                    .map(|(from, to)| Row { direction: low.direction, along: [from, to], across })
-                    .filter(|row| row.along[1] - row.along[0] >= SHORTEST && taken(view, row) >= TAKEN),
-            );
+            let row = move |(from, to)| Row { direction: strip.direction, along: [from, to], across };
+            pieces.into_iter().map(row).filter(|row| row.along[1] - row.along[0] >= SHORTEST)
+        };
+        for side in [0, 1] {
+            // What of the side no nearer corridor has taken yet.
+            let mut open = vec![(extents[n][0], extents[n][1])];
+            for m in neighbours(strips, n, side) {
+                let (low, high) = if side == 1 { (n, m) } else { (m, n) };
+                let across = [strips[low].across[1], strips[high].across[0]];
+                let depth = across[1] - across[0];
+                if depth > DEPTH.1 {
+                    break;
+                }
+                let [from, to] = extents[m];
+                let shared = open.iter().map(|(a, b)| (a.max(from), b.min(to))).filter(|(a, b)| a < b).collect();
+                open = without(open, from, to);
+                // Each pair of corridors once.
+                if side == 1 && depth >= DEPTH.0 {
+                    rows.extend(row(across, shared).filter(|row| taken(view, row) >= TAKEN));
+                }
+            }
+            let own = strip.across[side];
+            // Where no corridor runs along its other side, a row's other face must have been seen.
+            let mut faces: Vec<(f64, usize)> = (0..view.lines.len())
+                .map(|n| (evidence.lines.offsets[view.lines[n]] - own, n))
+                .map(|(offset, n)| (if side == 1 { offset } else { -offset }, n))
+                .filter(|(depth, _)| (DEPTH.0..=DEPTH.1).contains(depth))
+                .collect();
+            faces.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for (depth, n) in faces {
+                let across = if side == 1 { [own, own + depth] } else { [own - depth, own] };
+                let is_row = |row: &Row| taken(view, row) >= TAKEN_OUTSIDE && seen(view, n, row) >= SEEN_OUTSIDE;
+                let found: Vec<Row> = row(across, open.clone()).filter(is_row).collect();
+                for row in &found {
+                    open = without(open, row.along[0], row.along[1]);
+                }
+                rows.extend(found);
+            }
         }
     }
-    rows
+    apart(views, rows)
+}
+
+/// The longest of rows that overlap.
+fn apart(views: &[Turned], mut rows: Vec<Row>) -> Vec<Row> {
+    let length = |row: &Row| row.along[1] - row.along[0];
+    rows.sort_by(|a, b| length(b).total_cmp(&length(a)));
+    let middle = |row: &Row| {
+        let [u, v] = [row.along, row.across].map(|ends| f64::midpoint(ends[0], ends[1]));
+        views[row.direction].to_map([u, v])
+    };
+    let holds = |row: &Row, point: [f64; 2]| {
+        let [u, v] = views[row.direction].place(point);
+        (row.along[0]..=row.along[1]).contains(&u) && (row.across[0]..=row.across[1]).contains(&v)
+    };
+    let mut kept: Vec<Row> = Vec::new();
+    for row in rows {
+        if kept.iter().all(|other| !holds(other, middle(&row)) && !holds(&row, middle(other))) {
+            kept.push(row);
+        }
+    }
+    kept
+}
+
+/// Share of a row's length on which structure lies on one of its view's lines.
+fn seen(view: &Turned, line: usize, row: &Row) -> f64 {
+    let columns = view.column(row.along[0])..view.column(row.along[1]) + 1;
+    let count = columns.len() as f64;
+    columns.filter(|&c| view.covered[line][c]).count() as f64 / count
+}
+
+/// Corridors of the same direction on one side of a corridor, the nearest first.
+fn neighbours(strips: &[Strip], n: usize, side: usize) -> Vec<usize> {
+    let own = &strips[n];
+    let gap = |m: usize| {
+        let other = &strips[m];
+        if side == 1 { other.across[0] - own.across[1] } else { own.across[0] - other.across[1] }
+    };
+    let mut found: Vec<usize> =
+        (0..strips.len()).filter(|&m| m != n && strips[m].direction == own.direction && gap(m) > -SAME).collect();
+    found.sort_by(|&a, &b| gap(a).total_cmp(&gap(b)));
+    found
 }
 
 /// Pieces without what lies between two places.

@@ -21,7 +21,7 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
     for &(n, side, place) in &ends {
         extents[n][side] = place;
     }
-    let rows = racks::find(&views, &strips, &extents);
+    let rows = racks::find(evidence, &views, &strips, &extents);
 
     // A face is of one junction, or of one corridor, or of none.
     let mut faces = Faces::new(evidence, |state| state == State::Free);
