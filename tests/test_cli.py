@@ -239,10 +239,14 @@ def test_simulate_prints_what_it_wrote_and_evaluate_scores_its_survey(tmp_path: 
 
 
 def test_a_suite_compares_the_methods(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
-    from groundplan.evaluate import _suite
+    from groundplan.evaluate import Case, _suite
 
     small = {"width": 26.0, "depth": 16.0, "beams": 240, "scan_every": 1.0, "cross_aisles": 0}
-    monkeypatch.setattr(_suite, "suite", lambda name: [("one", {"seed": 1, **small}), ("two", {"seed": 2, **small})])
+    monkeypatch.setattr(
+        _suite,
+        "suite",
+        lambda name: [Case("one", "regular", {"seed": 1, **small}), Case("two", "hard", {"seed": 2, **small})],
+    )
     ran = call(capsys, "evaluate", "--suite", "warehouses", "--workers", "1", "--json")
     result = json.loads(ran.out)
     assert ran.code == 0 and result["methods"] == list(_suite.methods()) and "paper" in result["methods"]
@@ -250,10 +254,13 @@ def test_a_suite_compares_the_methods(capsys: Capture, monkeypatch: pytest.Monke
     found = [case["scores"]["paper"]["junction_f1"] for case in result["cases"]]
     assert result["means"]["paper"]["junction_f1"] == pytest.approx(sum(found) / 2, abs=1e-4)
     assert result["worst"]["paper"]["junction_f1"] == min(found)
+    assert result["kinds"]["hard"]["means"]["paper"]["junction_f1"] == found[1]
     assert call(capsys, "evaluate", "--suite", "warehouses", "--workers", "2", "--json").out == ran.out
     table = call(capsys, "evaluate", "--suite", "warehouses", "--workers", "1").out.splitlines()
     assert table[0].split() == list(_suite.methods())
-    assert [line.split()[0] for line in table[3:]] == ["one", "two", "-" * len(table[2].split()[0]), "mean", "worst"]
+    rule = "-" * len(table[2].split()[0])
+    assert [line.split()[0] for line in table[3:]] == ["one", "two", rule, "mean", "mean", "mean", "worst"]
+    assert [line.split()[1] for line in table[-4:]] == ["regular", "hard", "all", "all"]
 
 
 def test_scores_without_scipy_name_the_extra(tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -153,15 +153,17 @@ def test_a_missing_extra_names_its_remedy(monkeypatch: pytest.MonkeyPatch) -> No
     assert caught.value.hint is not None and "groundplan[evaluate]" in caught.value.hint
 
 
-def test_the_warehouse_suite_has_twenty_valid_cases() -> None:
+def test_the_warehouse_suite_has_forty_valid_cases_in_two_halves() -> None:
     assert "warehouses" in suites()
     cases = suite("warehouses")
-    assert len(cases) == len({name for name, _ in cases}) == 20
-    assert len({options["seed"] for _, options in cases}) == 20
-    for _, options in cases:
-        WarehouseOptions(**{k: v for k, v in options.items() if k != "seed"})
+    assert [case.kind for case in cases] == ["regular"] * 20 + ["hard"] * 20
+    assert len({case.name for case in cases}) == len({case.options["seed"] for case in cases}) == 40
+    for case in cases:
+        WarehouseOptions(**{k: v for k, v in case.options.items() if k != "seed"})
     for varied in ("yaw", "skew", "clutter", "drift", "sparse", "partial", "closed_sides", "width"):
-        assert any(varied in options for _, options in cases)
+        assert any(varied in case.options for case in cases[:20])
+    for varied in ("halls", "crosswise", "gap", "wing", "staggered", "uneven", "goods", "bend", "lidar_range"):
+        assert any(varied in case.options for case in cases[20:])
 
 
 def test_an_unknown_suite_is_named() -> None:

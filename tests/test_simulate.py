@@ -18,7 +18,8 @@ import yaml
 from groundplan._errors import FormatError, ParameterError
 from groundplan.maps._map import FREE, OCCUPIED, UNKNOWN
 from groundplan.simulate import Simulated, WarehouseOptions, warehouse
-from groundplan.simulate._drive import Drift, explored, route
+from groundplan.simulate._drift import Drift
+from groundplan.simulate._drive import explored, route
 from groundplan.simulate._lidar import Pose, cast, grid_map
 from groundplan.simulate._plan import Corridor, GroundPlan, Point, network
 from groundplan.simulate._raster import city_block, rasterise

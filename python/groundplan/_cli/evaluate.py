@@ -97,12 +97,16 @@ def _shown(figure: float | None, decimals: int) -> str:
 
 
 def suite_table(result: dict[str, Any]) -> str:
-    """A line for each case, the mean and the worst; the methods side by side where the terminal has room."""
+    """A line for each case, the means and the worst; the methods side by side where the terminal has room."""
     methods: list[str] = result["methods"]
-    rows = [(case["name"], case["scores"]) for case in result["cases"]]
-    rows += [(name, result[key]) for name, key in (("mean", "means"), ("worst", "worst"))]
-    cases = _block("", ["case", *BEFORE.values()], [[name, *_cells(by[methods[0]], BEFORE)] for name, by in rows])
-    blocks = [_block(m, [*LABELS.values()], [_cells(by[m], LABELS, 2) for _, by in rows]) for m in methods]
+    rows = [(case["name"], case["kind"], case["scores"]) for case in result["cases"]]
+    rows += [("mean", kind, part["means"]) for kind, part in result["kinds"].items() if len(result["kinds"]) > 1]
+    rows += [(name, "all", result[key]) for name, key in (("mean", "means"), ("worst", "worst"))]
+    below = len(rows) - len(result["cases"])
+    head = ["case", "kind", *BEFORE.values()]
+    first = [[name, kind, *_cells(by[methods[0]], BEFORE)] for name, kind, by in rows]
+    cases = _block("", head, first, below)
+    blocks = [_block(m, [*LABELS.values()], [_cells(by[m], LABELS, 2) for *_, by in rows], below) for m in methods]
     side_by_side = _beside(cases, *blocks)
     if terminal.has_room(len(side_by_side[1])):
         return "\n".join(side_by_side) + "\n"
@@ -113,11 +117,11 @@ def _cells(scores: dict[str, Any], keys: Iterable[str], decimals: int | None = N
     return [_shown(scores[key], SCORES[key][2] if decimals is None else decimals) for key in keys]
 
 
-def _block(title: str, head: list[str], rows: list[list[str]]) -> list[str]:
-    """Lines of one width: the title, the names of the columns, the rows, and rules round the cases."""
-    lines = terminal.columns([head, *rows], "<" * (head[0] == "case") + ">" * len(head))
+def _block(title: str, head: list[str], rows: list[list[str]], below: int) -> list[str]:
+    """Lines of one width: the title, the names of the columns, the rows, and rules round all but the last `below`."""
+    lines = terminal.columns([head, *rows], "<<" * (head[0] == "case") + ">" * len(head))
     rule = "-" * max(map(len, lines))
-    return [line.ljust(len(rule)) for line in (title, lines[0], rule, *lines[1:-2], rule, *lines[-2:])]
+    return [line.ljust(len(rule)) for line in (title, lines[0], rule, *lines[1:-below], rule, *lines[-below:])]
 
 
 def _beside(*blocks: list[str]) -> list[str]:

@@ -39,6 +39,8 @@ def _flag(option: dataclasses.Field[Any]) -> dict[str, Any]:
     """What argparse is told of an option: all that its metadata says."""
     facts, default = option.metadata, option.default
     sentence = facts["help"].rstrip(".")
+    if default is False:
+        return {"action": "store_true", "default": None, "help": f"{sentence} (default: no)"}
     if "choices" in facts:
         return {"nargs": "+", "choices": facts["choices"], "metavar": "SIDE", "help": f"{sentence} (default: none)"}
     unit = f" {facts['unit']}" if "unit" in facts else ""

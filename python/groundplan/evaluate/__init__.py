@@ -6,6 +6,7 @@ import json
 import os
 import tomllib
 from collections.abc import Mapping
+from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -13,9 +14,26 @@ from typing import Any, TypeAlias
 from groundplan._errors import FormatError, ParameterError
 from groundplan.evaluate import _scores
 
-__all__ = ["score", "suite", "suites"]
+__all__ = ["Case", "score", "suite", "suites"]
 
 Document: TypeAlias = Mapping[str, Any] | str | os.PathLike[str]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One map of a suite.
+
+    Attributes
+    ----------
+    name, kind : str
+        What it is called, and the part of the suite that it belongs to, such as ``regular`` or ``hard``.
+    options : dict
+        Of the simulation, its seed among them.
+    """
+
+    name: str
+    kind: str
+    options: dict[str, Any]
 
 
 def score(survey: Document, truth: Document) -> dict[str, Any]:
@@ -93,8 +111,8 @@ def suites() -> list[str]:
     return sorted(f.name.removesuffix(".toml") for f in here.iterdir() if f.name.endswith(".toml"))
 
 
-def suite(name: str) -> list[tuple[str, dict[str, Any]]]:
-    """The cases of a suite: (name of the case, options of `groundplan.simulate.warehouse`, its seed among them).
+def suite(name: str) -> list[Case]:
+    """The cases of a suite.
 
     Raises
     ------
@@ -104,4 +122,4 @@ def suite(name: str) -> list[tuple[str, dict[str, Any]]]:
     if name not in suites():
         raise ParameterError("suite.unknown", f"no suite {name!r}", f"there are: {', '.join(suites())}")
     text = (resources.files("groundplan.evaluate") / f"{name}.toml").read_text(encoding="utf-8")
-    return [(case.pop("name"), case) for case in tomllib.loads(text)["case"]]
+    return [Case(case.pop("name"), case.pop("kind"), case) for case in tomllib.loads(text)["case"]]

@@ -50,8 +50,9 @@ def run(
     Returns
     -------
     dict
-        ``suite``; ``methods``; ``cases``, each with its ``name``, ``options`` and, by method, ``scores``; ``means``
-        and ``worst``, by method, each score over the cases. A score that no case has is None.
+        ``suite``; ``methods``; ``cases``, each with its ``name``, ``kind``, ``options`` and, by method, ``scores``;
+        ``means`` and ``worst``, by method, each score over the cases; ``kinds``, by kind of case, the same two. A
+        score that no case has is None.
 
     Raises
     ------
@@ -66,16 +67,28 @@ def run(
     cases = suite(name)
     for module in ("scipy.optimize", "shapely"):
         _scores.optional(module)
-    scores = _scored([options for _, options in cases], labellers, workers or cores(), progress or (lambda *_: None))
+    scores = _scored([case.options for case in cases], labellers, workers or cores(), progress or (lambda *_: None))
+    kinds = {
+        kind: _summary([by for case, by in zip(cases, scores, strict=True) if case.kind == kind], labellers)
+        for kind in dict.fromkeys(case.kind for case in cases)
+    }
     return {
         "suite": name,
         "methods": list(labellers),
         "cases": [
-            {"name": case, "options": options, "scores": by_method}
-            for (case, options), by_method in zip(cases, scores, strict=True)
+            {"name": case.name, "kind": case.kind, "options": case.options, "scores": by_method}
+            for case, by_method in zip(cases, scores, strict=True)
         ],
-        "means": {method: _over(_mean, [by[method] for by in scores]) for method in labellers},
-        "worst": {method: _over(_worst, [by[method] for by in scores]) for method in labellers},
+        **_summary(scores, labellers),
+        "kinds": kinds,
+    }
+
+
+def _summary(scores: list[dict[str, dict[str, Any]]], labellers: tuple[str, ...]) -> dict[str, Any]:
+    """Mean and worst of every score, by method."""
+    return {
+        name: {method: _over(figure, [by[method] for by in scores]) for method in labellers}
+        for name, figure in (("means", _mean), ("worst", _worst))
     }
 
 

@@ -1,7 +1,7 @@
 """Maps of places that never were, with exact truth: a ground plan is laid out, driven through and scanned.
 
-    options (_options) -> layout (_warehouse) -> plan and network (_plan)
-    plan -> raster (_raster) -> drive (_drive) -> scans and map (_lidar)
+    options (_options) -> halls (_hall, _uneven, _staggered, _halls) -> plan (_warehouse, _goods) -> network (_plan)
+    plan -> raster (_raster) -> drive (_drive, _drift) -> scans and map (_lidar)
     plan, network and map -> truth (_truth)
 
 All is seeded: the same options and seed give the same bytes.
@@ -24,7 +24,8 @@ import numpy.typing as npt
 from groundplan._errors import ParameterError
 from groundplan._files import write_bytes, write_text
 from groundplan.maps import _map
-from groundplan.simulate._drive import Drift, explored, route, scan_poses
+from groundplan.simulate._drift import Drift
+from groundplan.simulate._drive import explored, route, scan_poses
 from groundplan.simulate._lidar import UNKNOWN, cast, grid_map
 from groundplan.simulate._options import WarehouseOptions
 from groundplan.simulate._plan import Point, network
@@ -112,7 +113,9 @@ def warehouse(options: WarehouseOptions | None = None, seed: int = 0, **changes:
         raise ParameterError("simulate.seed", f"seed is {seed}, not zero or more")
     options = dataclasses.replace(options or WarehouseOptions(), **changes)
     # One stream for each part, so that more noise does not move the racks.
-    layout, exploration, wander, sensing = (np.random.Generator(np.random.PCG64([seed, part])) for part in range(4))
+    layout, exploration, wander, sensing, bending = (
+        np.random.Generator(np.random.PCG64([seed, part])) for part in range(5)
+    )
     plan = warehouse_plan(options, layout)
     net = network(plan.corridors)
     world = rasterise(plan)
@@ -121,7 +124,7 @@ def warehouse(options: WarehouseOptions | None = None, seed: int = 0, **changes:
     poses = scan_poses(points, options.scan_every, world, exploration)
     ranges = cast(world, [p for p, _ in poses], options.beams, options.lidar_range, options.noise, sensing)
 
-    drift = Drift(options.drift, plan.outline, wander)
+    drift = Drift(options.drift, plan.outline, wander, options.bend, bending)
     yaw = math.radians(options.yaw)
     c, s = math.cos(yaw), math.sin(yaw)
     start = points[0]

@@ -1,4 +1,4 @@
-"""Where the robot drives, and where it believes that it was."""
+"""Where the robot drives."""
 
 from __future__ import annotations
 
@@ -146,78 +146,3 @@ def scan_poses(
         due -= length
         driven += length
     return poses
-
-
-class Drift:
-    """What a SLAM back end leaves of the odometry's error.
-
-    A smooth field over the site bends rows, the same on every pass; a slow error along the drive, a third of it,
-    doubles what is seen on two passes. The field's mean, turn and stretch are taken out, since the map frame is
-    where the map says it is, so directions and places stay true in the mean.
-    """
-
-    def __init__(self, amount: float, outline: list[Point], random: np.random.Generator) -> None:
-        self._amount = amount
-        xs, ys = [p[0] for p in outline], [p[1] for p in outline]
-        self._centre = (min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2
-        size = max(max(xs) - min(xs), max(ys) - min(ys))
-        self._waves: list[list[tuple[float, float, float]]] = []  # x part, y part: wave vector and phase
-        self._plane: list[tuple[float, float, float]] = []
-        for _ in range(2):
-            waves = []
-            for _ in range(3):
-                angle, length = float(random.uniform(0, 2 * math.pi)), size * float(random.uniform(0.6, 1.6))
-                k = 2 * math.pi / length
-                waves.append((k * math.cos(angle), k * math.sin(angle), float(random.uniform(0, 2 * math.pi))))
-            self._waves.append(waves)
-        grid = [
-            (min(xs) + (max(xs) - min(xs)) * i / 20, min(ys) + (max(ys) - min(ys)) * j / 20)
-            for i in range(21)
-            for j in range(21)
-        ]
-        for part in range(2):
-            raw = [self._wave(part, *p) for p in grid]
-            mean = math.fsum(raw) / len(raw)
-            slopes = []
-            for axis in (0, 1):
-                arm = [p[axis] - self._centre[axis] for p in grid]
-                slopes.append(math.fsum(a * r for a, r in zip(arm, raw, strict=True)) / math.fsum(a * a for a in arm))
-            self._plane.append((mean, slopes[0], slopes[1]))
-        square = math.fsum(self._raw(part, *p) ** 2 for part in range(2) for p in grid) / (2 * len(grid))
-        self._gain = amount / math.sqrt(square) if amount else 0.0
-
-    def _wave(self, part: int, x: float, y: float) -> float:
-        return math.fsum(math.sin(kx * x + ky * y + phase) for kx, ky, phase in self._waves[part])
-
-    def _raw(self, part: int, x: float, y: float) -> float:
-        mean, sx, sy = self._plane[part]
-        return self._wave(part, x, y) - mean - sx * (x - self._centre[0]) - sy * (y - self._centre[1])
-
-    def bend(self, at: Point) -> Point:
-        """Where the map shows this point of the plan."""
-        if not self._gain:
-            return at
-        return at[0] + self._gain * self._raw(0, *at), at[1] + self._gain * self._raw(1, *at)
-
-    def believed(self, poses: list[tuple[Pose, float]], random: np.random.Generator) -> list[Pose]:
-        """The poses as the robot's SLAM has them."""
-        if not self._gain:
-            return [pose for pose, _ in poses]
-        wander, before, result = [0.0, 0.0, 0.0], 0.0, []
-        scale = (0.35 * self._amount, 0.35 * self._amount, 0.02 * self._amount)
-        for pose, driven in poses:
-            keep = math.exp(-(driven - before) / 8.0)
-            fresh = math.sqrt(1 - keep * keep)
-            wander = [keep * w + fresh * s * float(random.normal()) for w, s in zip(wander, scale, strict=True)]
-            before = driven
-            x, y = self.bend((pose.x, pose.y))
-            turn = self._turn(pose.x, pose.y)
-            result.append(Pose(x + wander[0], y + wander[1], pose.heading + turn + wander[2]))
-        return result
-
-    def _turn(self, x: float, y: float) -> float:
-        """How far the field turns what is near this point: half its curl."""
-        h = 0.5
-        up = self._raw(1, x + h, y) - self._raw(1, x - h, y)
-        across = self._raw(0, x, y + h) - self._raw(0, x, y - h)
-        return self._gain * (up - across) / (4 * h)

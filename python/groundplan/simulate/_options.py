@@ -42,6 +42,30 @@ class WarehouseOptions:
     clutter: float = _option(
         0.4, "Things left on the floor: pallets, boxes, poles.", unit="per 10 m of aisle", least=0.0, most=10.0
     )
+    goods: float = _option(
+        0.0, "Stacks of pallets on the floor beside the racks.", unit="per 10 m of aisle", least=0.0, most=5.0
+    )
+    staggered: float = _option(
+        0.0,
+        "How far each rack row has its cross aisles from the regular places, at most.",
+        unit="m",
+        least=0.0,
+        most=30.0,
+    )
+    uneven: float = _option(
+        0.0, "How much the rows differ in depth, and the share of them that end early.", least=0.0, most=1.0
+    )
+    halls: int = _option(1, "Halls, joined by passages or gates.", least=1, most=5)
+    gap: float = _option(
+        0.5, "Length of the passages between halls; 0.5 is a gate in one wall.", unit="m", least=0.5, most=30.0
+    )
+    crosswise: bool = _option(False, "Let the rows of every second hall run across those of the others.")
+    wing: float = _option(
+        0.0, "Angle of a wing that is turned against the halls, 0 for no wing.", unit="deg", least=-60.0, most=60.0
+    )
+    bend: float = _option(
+        0.0, "How far the map bends rows, smoothly over tens of metres, at most.", unit="m", least=0.0, most=0.5
+    )
     drift: float = _option(0.02, "Error of the robot's poses that bends and doubles.", unit="m", least=0.0, most=1.0)
     partial: float = _option(0.0, "Share of the ways that the robot does not drive.", least=0.0, most=0.9)
     closed_sides: tuple[str, ...] = _option(

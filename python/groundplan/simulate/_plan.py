@@ -16,7 +16,11 @@ import numpy.typing as npt
 Point = tuple[float, float]
 
 #: How far a corridor must go on beyond a crossing's own half width to count as an arm of the junction, metres.
-_ARM = 1.0
+_ARM = 2.0
+#: Crossings nearer than this are one, metres.
+_APART = 0.3
+#: Three ways of which two meet at less than this angle are a Y and no T.
+_SQUARE = math.radians(54.5)
 
 
 @dataclass(frozen=True)
@@ -61,11 +65,14 @@ class Node:
 
     @property
     def kind(self) -> str | None:
-        """L, T, X or end; None where a corridor merely goes straight on."""
+        """L, T, Y, X or end; None where a corridor merely goes straight on."""
         if len(self.arms) == 2:
             (ax, ay), (bx, by) = self.arms
             return None if ax * bx + ay * by < -0.94 else "L"
-        return {1: "end", 3: "T", 4: "X"}.get(len(self.arms))
+        if len(self.arms) == 3:
+            cosines = [a[0] * b[0] + a[1] * b[1] for a, b in itertools.combinations(self.arms, 2)]
+            return "T" if min(cosines) < -0.94 and max(cosines) < math.cos(_SQUARE) else "Y"
+        return {1: "end", 4: "X"}.get(len(self.arms))
 
 
 @dataclass
@@ -81,7 +88,7 @@ class GroundPlan:
     faces, corridors
         What a survey of a perfect map would find.
     outline : list of (float, float)
-        Corners of the enclosure.
+        Corners of the halls: all lies within their box.
     """
 
     directions: list[float]
@@ -119,13 +126,13 @@ class Network:
 
 
 def network(corridors: list[Corridor]) -> Network:
-    """Cross all centre lines; what leaves a crossing by more than its own square is an arm of it."""
+    """Cross all centre lines; what leaves a crossing beyond its own square, or leads to another, is an arm of it."""
     places: list[Point] = []
     stops: list[dict[int, float]] = [{} for _ in corridors]  # corridor -> {node: metres along it}
     members: list[list[int]] = []
 
     def visit(at: Point, mine: tuple[int, ...]) -> None:
-        node = next((k for k, p in enumerate(places) if math.dist(p, at) < 0.3), len(places))
+        node = next((k for k, p in enumerate(places) if math.dist(p, at) < _APART), len(places))
         if node == len(places):
             places.append(at)
             members.append([])
@@ -150,7 +157,9 @@ def network(corridors: list[Corridor]) -> Network:
         for k in mine:
             for end in (corridors[k].a, corridors[k].b):
                 far = math.dist(at, end)
-                if far > (_reach(corridors, mine, k) if len(mine) > 1 else 0.1):
+                if far > (_reach(corridors, mine, k) if len(mine) > 1 else 0.1) or (
+                    far > _APART and any(len(members[n]) > 1 and math.dist(places[n], end) < _APART for n in stops[k])
+                ):
                     arms.append(((end[0] - at[0]) / far, (end[1] - at[1]) / far))
         nodes.append(Node(at, tuple(arms), max(corridors[k].width for k in mine)))
     roads: list[tuple[int, int]] = []

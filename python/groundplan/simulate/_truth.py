@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,6 +17,8 @@ from groundplan.simulate._plan import Face, GroundPlan, Network, Node, Point
 Frame = Callable[[Point], Point]
 
 _EVERY = 0.1  # metres between two looks along a line
+_BENT = 0.10  # metres that a straight piece of a bent line may leave it by ...
+_SHORTEST = 4.0  # ... unless it is hardly longer than this
 _BAY = 1.5  # half the window, metres, in which a line must show something: a bay wide
 
 
@@ -53,7 +56,7 @@ def truth(plan: GroundPlan, net: Network, picture: Picture, frame: Frame, yaw: f
     """
     pieces = [(face, piece) for face in plan.faces for piece in _seen_face(face, picture, frame)]
     directions = [_fold(a + yaw + _turned(a, yaw, pieces, frame)) for a in plan.directions]
-    lines = [_line(face.kind, _straight(piece, frame)) for face, piece in pieces]
+    lines = [_line(face.kind, straight) for face, piece in pieces for straight in _straights(piece, frame)]
     corridors = []
     for corridor in plan.corridors:
         for a, b in _seen_corridor(corridor.a, corridor.b, picture, frame):
@@ -180,9 +183,27 @@ def _runs(flags: npt.NDArray[np.bool_], gap: int) -> list[tuple[int, int]]:
     return runs
 
 
-def _straight(points: list[Point], frame: Frame) -> tuple[Point, Point]:
-    """The straight piece that fits best where the map shows these points of a line."""
+def _straights(points: list[Point], frame: Frame) -> list[tuple[Point, Point]]:
+    """The straight pieces that fit best where the map shows these points of a line: one, or more where it bends."""
     shown = [frame(p) for p in points]
+    for count in range(1, max(1, round(len(points) * _EVERY / _SHORTEST)) + 1):
+        stops = [round(k * len(shown) / count) for k in range(count + 1)]
+        pieces = [shown[a:b] for a, b in itertools.pairwise(stops)]
+        fits = [_straight(piece) for piece in pieces]
+        if all(_off(fit, piece) < _BENT for fit, piece in zip(fits, pieces, strict=True)):
+            break
+    return fits
+
+
+def _off(line: tuple[Point, Point], points: list[Point]) -> float:
+    """How far the points lie off a line, at most."""
+    (ax, ay), (bx, by) = line
+    length = math.dist(*line) or 1.0
+    return max(abs((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / length for x, y in points)
+
+
+def _straight(shown: list[Point]) -> tuple[Point, Point]:
+    """The straight piece that fits points of a line best."""
     n = len(shown)
     mx, my = math.fsum(p[0] for p in shown) / n, math.fsum(p[1] for p in shown) / n
     sxx = math.fsum((p[0] - mx) ** 2 for p in shown)
