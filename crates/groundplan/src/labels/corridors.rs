@@ -81,7 +81,7 @@ const FACED: f64 = 0.7;
 const FACED_TWICE: f64 = 0.4;
 const FACED_ONCE: f64 = 0.85;
 /// Posts that recur further apart than this are not those of bays, metres.
-const LONGEST_BAY: f64 = 4.5;
+pub const LONGEST_BAY: f64 = 4.5;
 /// A strip from so many to so many pitches wide may be a row of bays.
 const BAY_WIDTH: (f64, f64) = (0.65, 1.12);
 /// Share of its sides that is structure on both when it is none.
@@ -137,7 +137,7 @@ impl<'a> Family<'a> {
             pitches: pitches.collect(),
             view,
             parameters: evidence.parameters,
-            offsets: view.lines.iter().map(|&n| evidence.lines.offsets[n]).collect(),
+            offsets: view.offsets.clone(),
             sides: view.covered.iter().map(|covered| Side::new(covered, view.cell, bay)).collect(),
         }
     }

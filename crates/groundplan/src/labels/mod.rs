@@ -1,6 +1,7 @@
 //! II-E: what the parts of the map are.
 
 mod corridors;
+mod gates;
 mod junctions;
 mod names;
 mod outline;

@@ -16,6 +16,8 @@ pub struct Row {
     pub along: [f64; 2],
     /// Its two faces, across.
     pub across: [f64; 2],
+    /// The corridors below and above it, where there are two.
+    pub between: Option<[usize; 2]>,
 }
 
 /// Two faces are this far apart, metres: less is a wall, more is a room.
@@ -35,13 +37,13 @@ pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[
     let mut rows = Vec::new();
     for (n, strip) in strips.iter().enumerate() {
         let view = &views[strip.direction];
-        let row = |across: [f64; 2], pieces: Vec<(f64, f64)>| {
+        let row = |across: [f64; 2], pieces: Vec<(f64, f64)>, between: Option<[usize; 2]>| {
             let mut pieces = pieces;
             for (k, crossing) in strips.iter().enumerate().filter(|(_, s)| s.direction != strip.direction) {
                 let [from, to] = crossed(view, &views[crossing.direction], crossing, extents[k], across);
                 pieces = without(pieces, from, to);
             }
-            let row = move |(from, to)| Row { direction: strip.direction, along: [from, to], across };
+            let row = move |(from, to)| Row { direction: strip.direction, along: [from, to], across, between };
             pieces.into_iter().map(row).filter(|row| row.along[1] - row.along[0] >= SHORTEST)
         };
         for side in [0, 1] {
@@ -59,7 +61,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[
                 open = without(open, from, to);
                 // Each pair of corridors once.
                 if side == 1 && depth >= DEPTH.0 {
-                    rows.extend(row(across, shared).filter(|row| taken(view, row) >= TAKEN));
+                    rows.extend(row(across, shared, Some([low, high])).filter(|row| taken(view, row) >= TAKEN));
                 }
             }
             let own = strip.across[side];
@@ -73,7 +75,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[
             for (depth, n) in faces {
                 let across = if side == 1 { [own, own + depth] } else { [own - depth, own] };
                 let is_row = |row: &Row| taken(view, row) >= TAKEN_OUTSIDE && seen(view, n, row) >= SEEN_OUTSIDE;
-                let found: Vec<Row> = row(across, open.clone()).filter(is_row).collect();
+                let found: Vec<Row> = row(across, open.clone(), None).filter(is_row).collect();
                 for row in &found {
                     open = without(open, row.along[0], row.along[1]);
                 }

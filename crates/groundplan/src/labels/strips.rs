@@ -1,6 +1,7 @@
 //! II-E, the successor of Algorithm 1: corridors first, junctions where they meet.
 
 use super::corridors::{self, Strip};
+use super::gates;
 use super::junctions::{self, Meeting};
 use super::names::{Named, names};
 use super::racks::{self, Row};
@@ -15,13 +16,13 @@ const NICHE: f64 = 1.5;
 
 pub fn find(evidence: &Evidence) -> Vec<Label> {
     let views: Vec<Turned> = (0..evidence.directions.angles.len()).map(|d| Turned::new(evidence, d)).collect();
-    let (strips, meetings) = connected(&views, corridors::find(evidence, &views));
-    let mut extents = extents(&views, &strips, &meetings);
-    let ends = junctions::ends(&views, &strips, &meetings);
-    for &(n, side, place) in &ends {
-        extents[n][side] = place;
+    let mut plan = Plan::new(evidence, &views, corridors::find(evidence, &views));
+    let gates = gates::find(&views, &plan.strips, &plan.rows);
+    if !gates.is_empty() {
+        plan.strips.extend(gates);
+        plan = Plan::new(evidence, &views, plan.strips);
     }
-    let rows = racks::find(evidence, &views, &strips, &extents);
+    let Plan { strips, meetings, ends, extents, rows } = plan;
 
     // A face is of one junction, or of one corridor, or of none.
     let mut faces = Faces::new(evidence, |state| state == State::Free);
@@ -64,6 +65,30 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
     labels.extend(junctions);
     labels.extend(rack_labels(evidence, &views, &rows));
     labels
+}
+
+/// The ways, what they meet and where they end, and the rows between them.
+struct Plan {
+    strips: Vec<Strip>,
+    meetings: Vec<Meeting>,
+    /// Dead ends: the corridor, which end of it, and the place along.
+    ends: Vec<(usize, usize, f64)>,
+    /// Where each corridor begins and ends, along, with its junctions.
+    extents: Vec<[f64; 2]>,
+    rows: Vec<Row>,
+}
+
+impl Plan {
+    fn new(evidence: &Evidence, views: &[Turned], strips: Vec<Strip>) -> Self {
+        let (strips, meetings) = connected(views, strips);
+        let mut extents = extents(views, &strips, &meetings);
+        let ends = junctions::ends(views, &strips, &meetings);
+        for &(n, side, place) in &ends {
+            extents[n][side] = place;
+        }
+        let rows = racks::find(evidence, views, &strips, &extents);
+        Self { strips, meetings, ends, extents, rows }
+    }
 }
 
 fn rack_labels(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Label> {

@@ -35,6 +35,8 @@ pub struct Turned {
     pub pitch: Option<f64>,
     /// Lines of the direction: their ids, ascending in offset.
     pub lines: Vec<usize>,
+    /// Their offsets.
+    pub offsets: Vec<f64>,
     /// For each of those lines, whether structure lies on it in each column.
     pub covered: Vec<Vec<bool>>,
 }
@@ -64,6 +66,7 @@ impl Turned {
             samples: (side as u32).clamp(1, 3).pow(2),
             pitch: None,
             lines: Vec::new(),
+            offsets: Vec::new(),
             covered: Vec::new(),
         };
         made.sum_blocked(evidence);
@@ -122,6 +125,7 @@ impl Turned {
             .filter(|&n| lines.directions[n] as usize == self.direction && lines.amplitudes[n] >= strong)
             .collect();
         self.lines.sort_by(|&a, &b| lines.offsets[a].total_cmp(&lines.offsets[b]));
+        self.offsets = self.lines.iter().map(|&n| lines.offsets[n]).collect();
         self.covered = vec![vec![false; self.size[0]]; self.lines.len()];
         let near = NEAR.0.max(NEAR.1 * frame.resolution);
         let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
