@@ -84,8 +84,8 @@ const FACED_ONCE: f64 = 0.85;
 pub const LONGEST_BAY: f64 = 4.5;
 /// A strip from so many to so many pitches wide may be a row of bays.
 const BAY_WIDTH: (f64, f64) = (0.65, 1.12);
-/// Share of its sides that is structure on both when it is none.
-const CLOSED_FRAMES: f64 = 0.6;
+/// It is none when nearly all of it has structure on a side, and so much has it on the weaker one.
+const WEAKER: f64 = 0.45;
 /// Strips that overlap across by more than this share of the narrower one are rivals.
 const RIVAL: f64 = 0.25;
 
@@ -182,7 +182,7 @@ impl<'a> Family<'a> {
                 parted: parts.iter().any(|part| part.faces[c]),
                 walled: holds(0, c) && holds(1, c),
                 near: sides.iter().any(|side| side.near[c]),
-                faces: sides.iter().map(|side| u8::from(side.faces[c])).sum(),
+                faces: sides.map(|side| side.faces[c]),
             })
             .collect()
     }
@@ -241,11 +241,13 @@ impl<'a> Family<'a> {
     fn is_corridor(&self, columns: &[Column], width: f64) -> bool {
         let count = |is: &dyn Fn(&Column) -> bool| columns.iter().filter(|c| is(c)).count() as f64;
         let near = count(&|c| c.walled && c.near);
-        let faced = |least: u8| count(&|c| c.walled && c.faces >= least);
+        let faced = |least: usize| count(&|c| c.walled && c.faces.iter().filter(|f| **f).count() >= least);
+        let weaker = count(&|c| c.walled && c.faces[0]).min(count(&|c| c.walled && c.faces[1]));
         let length = columns.len() as f64 * self.view.cell;
         // Between frames that are closed on both sides and go on and on, it is a cross aisle as wide as a bay.
         let bay = self.pitches.iter().any(|pitch| (BAY_WIDTH.0 * pitch..=BAY_WIDTH.1 * pitch).contains(&width));
-        let aisle = length >= VERY_LONG * width || (length >= LONG * width && faced(2) >= CLOSED_FRAMES * near);
+        let aisle = length >= VERY_LONG * width
+            || (length >= LONG * width && faced(1) >= FACED_ONCE * near && weaker >= WEAKER * near);
         if bay && !aisle {
             return false;
         }
@@ -299,8 +301,8 @@ struct Column {
     walled: bool,
     /// And not both sides are in the gap of a bay, or in the mouths of a way that crosses.
     near: bool,
-    /// On how many sides structure of some length lies.
-    faces: u8,
+    /// On which sides structure of some length lies.
+    faces: [bool; 2],
 }
 
 impl Column {
