@@ -83,7 +83,7 @@ const FACED_ONCE: f64 = 0.85;
 /// Posts that recur further apart than this are not those of bays, metres.
 pub const LONGEST_BAY: f64 = 4.5;
 /// A strip from so many to so many pitches wide may be a row of bays.
-const BAY_WIDTH: (f64, f64) = (0.65, 1.12);
+const BAY_WIDTH: (f64, f64) = (0.65, 1.17);
 /// It is none when nearly all of it has structure on a side, and so much has it on the weaker one.
 const WEAKER: f64 = 0.45;
 /// Strips that overlap across by more than this share of the narrower one are rivals.
