@@ -63,9 +63,8 @@ const BESIDE: (f64, f64) = (0.1, 0.5);
 const BEYOND: f64 = 0.8;
 /// Up to this share, what stands in the strip is clutter that one passes by.
 const NARROWED: f64 = 0.5;
-/// Nothing gets through where more than this share is blocked, and that speaks so much against a corridor.
-pub const IMPASSABLE: f64 = 0.8;
-const CLOSED: f64 = 40.0;
+/// No wall along a corridor makes up for one across it.
+const CLOSED: f64 = 1e6;
 /// A side with less than this share of structure on it cannot part two corridors.
 const DENSE: f64 = 0.6;
 /// Least share of a corridor's length that is walled on both sides.
@@ -179,6 +178,7 @@ impl<'a> Family<'a> {
         (0..view.size[0])
             .map(|c| Column {
                 blocked: view.blocked(c, across[0] + margin, across[1] - margin),
+                closed: view.is_closed(c, across[0] + margin, across[1] - margin),
                 parted: parts.iter().any(|part| part.faces[c]),
                 walled: holds(0, c) && holds(1, c),
                 near: sides.iter().any(|side| side.near[c]),
@@ -295,6 +295,8 @@ impl Side {
 struct Column {
     /// Share of it that is not free.
     blocked: f64,
+    /// Nothing gets through.
+    closed: bool,
     /// Structure lies along it between its sides.
     parted: bool,
     /// Structure lies on both sides, or a bay's gap in it.
@@ -308,7 +310,7 @@ struct Column {
 impl Column {
     /// What a column says for a corridor or against it.
     fn score(self) -> f64 {
-        let against = if self.blocked > IMPASSABLE {
+        let against = if self.closed {
             CLOSED
         } else if self.blocked > NARROWED {
             BLOCKED * self.blocked

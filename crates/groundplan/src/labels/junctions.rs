@@ -1,7 +1,7 @@
 //! II-E: junctions, where corridors meet; their type is the number of ways out.
 
 use super::JunctionKind;
-use super::corridors::{IMPASSABLE, Strip};
+use super::corridors::Strip;
 use super::turned::Turned;
 use crate::grid::angle_between;
 
@@ -74,8 +74,8 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
             (u, u)
         };
         let margin = 0.2 * strip.width();
-        let open = |c| view.blocked(c, strip.across[0] + margin, strip.across[1] - margin) <= IMPASSABLE;
-        if !(view.column(from)..=view.column(to)).all(open) {
+        let closed = |c| view.is_closed(c, strip.across[0] + margin, strip.across[1] - margin);
+        if (view.column(from)..=view.column(to)).any(closed) {
             return None;
         }
         ways[n] = u32::from(strip.along[0] <= u - reach[n] - ARM) + u32::from(strip.along[1] >= u + reach[n] + ARM);
@@ -127,7 +127,7 @@ fn closed(view: &Turned, strip: &Strip, side: usize, sign: f64) -> Option<f64> {
     let columns = (0..=cells(LOOK)).map(|step| start + step * sign as i64).filter(|c| (0..=last).contains(c));
     let margin = 0.2 * strip.width();
     let (low, high) = (strip.across[0] + margin, strip.across[1] - margin);
-    let first = columns.into_iter().find(|&c| view.blocked(c as usize, low, high) > IMPASSABLE)?;
+    let first = columns.into_iter().find(|&c| view.is_closed(c as usize, low, high))?;
     // A wall that is not quite square to the corridor shows in several columns.
     let deep = (-cells(DEEP)..=cells(DEEP)).map(|step| first + step).filter(|c| (0..=last).contains(c));
     let across: f64 = deep.map(|c| view.occupied(c as usize, low, high)).sum();

@@ -14,6 +14,10 @@ const NEAR: (f64, f64) = (0.12, 2.0);
 /// Lines with less than this share of a strong line's structure are no sides of corridors: the faces of single goods.
 const STRONG: f64 = 2.0;
 
+/// Nothing gets through where more than this share is not free, or more than this is barred by a wall, be it thin.
+const IMPASSABLE: f64 = 0.8;
+const BARRED: f64 = 0.9;
+
 /// One direction's view of the map. Places along it (u) and across it (v) are metres in the map frame turned by the
 /// direction: u = p.t with t = (cos, sin), v = p.n with n = (-sin, cos).
 pub struct Turned {
@@ -27,8 +31,9 @@ pub struct Turned {
     pub start: [f64; 2],
     /// Cells along and across.
     pub size: [usize; 2],
-    /// Sums of blocked samples over v, and of those the occupied, for each column one more than there are cells.
-    sums: Vec<[u32; 2]>,
+    /// Sums over v of blocked samples, of occupied ones, and of all samples of the places that something stands in or
+    /// beside; for each column one more than there are places.
+    sums: Vec<[u32; 3]>,
     /// Samples in a cell.
     samples: u32,
     /// Distance from post to post along its lines, metres, where posts recur.
@@ -89,12 +94,11 @@ impl Turned {
         };
         let (along, across) = (step(self.cell, 0.0), step(0.0, self.cell));
         let count = per_side as usize;
-        let columns = map_bands(nu, evidence.threads, |band| {
-            let mut sums = Vec::with_capacity(band.len() * (nv + 1));
+        let cells = map_bands(nu, evidence.threads, |band| {
+            let mut cells = Vec::with_capacity(band.len() * nv);
             for column in band {
-                let mut sum = [0u32; 2];
-                sums.push(sum);
                 for n in 0..nv {
+                    let mut cell = [0u32; 2];
                     for i in 0..count {
                         let a = (column * count + i) as f64 + 0.5;
                         for j in 0..count {
@@ -105,16 +109,29 @@ impl Turned {
                                 x >= 0.0 && y >= 0.0 && (x as usize) < frame.width && (y as usize) < frame.height;
                             let [blocked, occupied] =
                                 if inside { counts[usize::from(rows[y as usize][x as usize])] } else { [1, 0] };
-                            sum[0] += blocked;
-                            sum[1] += occupied;
+                            cell[0] += blocked;
+                            cell[1] += occupied;
                         }
                     }
-                    sums.push(sum);
+                    cells.push(cell);
                 }
             }
-            sums
-        });
-        self.sums = columns.concat();
+            cells
+        })
+        .concat();
+        self.sums = Vec::with_capacity(nu * (nv + 1));
+        for column in 0..nu {
+            let mut sum = [0u32; 3];
+            self.sums.push(sum);
+            for n in 0..nv {
+                let [blocked, occupied] = cells[column * nv + n];
+                // A wall one pixel thick, or not quite square to the columns, shows in two or three of them.
+                let near = column.saturating_sub(1)..(column + 2).min(nu);
+                let barred = near.into_iter().any(|c| cells[c * nv + n][1] > 0);
+                sum = [sum[0] + blocked, sum[1] + occupied, sum[2] + u32::from(barred) * self.samples];
+                self.sums.push(sum);
+            }
+        }
     }
 
     fn cover_lines(&mut self, evidence: &Evidence) {
@@ -177,6 +194,16 @@ impl Turned {
     /// Share of a column that is not free between two places across, 0 to 1; all of it where there is no cell between.
     pub fn blocked(&self, column: usize, low: f64, high: f64) -> f64 {
         self.share(column, low, high, 0)
+    }
+
+    /// Share of the way across a column that is barred: something stands in it, or in the columns beside it.
+    pub fn barred(&self, column: usize, low: f64, high: f64) -> f64 {
+        self.share(column, low, high, 2)
+    }
+
+    /// True when nothing gets through a column between two places across.
+    pub fn is_closed(&self, column: usize, low: f64, high: f64) -> bool {
+        self.blocked(column, low, high) > IMPASSABLE || self.barred(column, low, high) > BARRED
     }
 
     /// Share of a column that is occupied.
