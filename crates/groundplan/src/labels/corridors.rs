@@ -291,6 +291,7 @@ impl Side {
 }
 
 /// What one column of a strip holds.
+#[allow(clippy::struct_excessive_bools)] // Each is a question that is asked of the column.
 #[derive(Clone, Copy)]
 struct Column {
     /// Share of it that is not free.

@@ -3,19 +3,22 @@
 use super::JunctionKind;
 use super::corridors::Strip;
 use super::turned::Turned;
-use crate::grid::angle_between;
+use crate::grid::{angle_between, turned};
+use crate::subdivision::distance;
 
-/// Where two corridors meet.
+/// Where corridors meet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meeting {
     /// By its ways out.
     pub kind: JunctionKind,
     /// Its middle, metres in the map frame.
     pub at: [f64; 2],
-    /// The two corridors.
-    pub corridors: [usize; 2],
-    /// Half of each corridor's piece within the junction, metres along that corridor.
+    /// The two corridors that cross, and any others that lead here.
+    pub corridors: Vec<usize>,
+    /// Half of each of the first two corridors' piece within the junction, metres along that corridor.
     pub reach: [f64; 2],
+    /// Headings of the ways out, radians in the map frame.
+    ways: Vec<f64>,
 }
 
 /// A corridor goes on beyond a junction when it does so for this long, metres.
@@ -23,7 +26,9 @@ const ARM: f64 = 1.6;
 /// A corridor that ends this far short of another still meets it, metres, when the way between is free.
 const SHORT: f64 = 6.0;
 /// Junctions nearer than this are one, metres.
-const SAME: f64 = 1.0;
+const SAME: f64 = 1.5;
+/// Ways out whose headings differ by less are one, and such that differ by so little from opposite are in line.
+const SAME_WAY_DEG: f64 = 30.0;
 /// Three ways that meet at less than this angle are a Y, degrees.
 const SQUARE_DEG: f64 = 55.0;
 
@@ -32,15 +37,54 @@ pub fn find(views: &[Turned], strips: &[Strip]) -> Vec<Meeting> {
     let mut found: Vec<Meeting> = Vec::new();
     for a in 0..strips.len() {
         for b in a + 1..strips.len() {
-            if strips[a].direction != strips[b].direction
-                && let Some(meeting) = meet(views, strips, [a, b])
-                && found.iter().all(|other| crate::subdivision::distance(other.at, meeting.at) > SAME)
-            {
-                found.push(meeting);
+            if strips[a].direction == strips[b].direction {
+                continue;
+            }
+            let Some(meeting) = meet(views, strips, [a, b]) else { continue };
+            // A passage that goes on where an aisle ends is another corridor, but the junction is one.
+            match found.iter_mut().find(|other| distance(other.at, meeting.at) <= SAME) {
+                Some(other) => other.join(meeting),
+                None => found.push(meeting),
             }
         }
     }
+    found.retain_mut(|meeting| match kind(&meeting.ways) {
+        Some(kind) => {
+            meeting.kind = kind;
+            true
+        }
+        None => false,
+    });
     found
+}
+
+impl Meeting {
+    fn join(&mut self, other: Self) {
+        for way in other.ways {
+            if self.ways.iter().all(|own| turned(own - way).abs() > SAME_WAY_DEG.to_radians()) {
+                self.ways.push(way);
+            }
+        }
+        for corridor in other.corridors {
+            if !self.corridors.contains(&corridor) {
+                self.corridors.push(corridor);
+            }
+        }
+    }
+}
+
+/// What a junction is by the headings of its ways out.
+fn kind(ways: &[f64]) -> Option<JunctionKind> {
+    let opposite = |a: f64, b: f64| turned(a - b).abs() > (180.0 - SAME_WAY_DEG).to_radians();
+    let pairs = || (0..ways.len()).flat_map(|a| (a + 1..ways.len()).map(move |b| (ways[a], ways[b])));
+    let square = pairs().all(|(a, b)| opposite(a, b) || angle_between(a, b).to_degrees() >= SQUARE_DEG);
+    match ways.len() {
+        0 | 1 => None,
+        2 => (!opposite(ways[0], ways[1])).then_some(JunctionKind::L),
+        3 if square && pairs().any(|(a, b)| opposite(a, b)) => Some(JunctionKind::T),
+        3 => Some(JunctionKind::Y),
+        _ => Some(JunctionKind::X),
+    }
 }
 
 fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting> {
@@ -56,7 +100,7 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
     let (m1, m2) = (one.middle(), two.middle());
     let at = [(m1 * c2 - m2 * c1) / sine, (m1 * s2 - m2 * s1) / sine];
     let at = [at[0], at[1]];
-    let mut ways = [0; 2];
+    let mut ways = Vec::new();
     let mut reach = [0.0; 2];
     for (n, (strip, other, view)) in [(one, two, first), (two, one, second)].into_iter().enumerate() {
         let u = view.place(at)[0];
@@ -78,17 +122,16 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
         if (view.column(from)..=view.column(to)).any(closed) {
             return None;
         }
-        ways[n] = u32::from(strip.along[0] <= u - reach[n] - ARM) + u32::from(strip.along[1] >= u + reach[n] + ARM);
+        for (goes_on, heading) in [
+            (strip.along[0] <= u - reach[n] - ARM, view.angle + std::f64::consts::PI),
+            (strip.along[1] >= u + reach[n] + ARM, view.angle),
+        ] {
+            if goes_on {
+                ways.push(heading);
+            }
+        }
     }
-    let apart = angle_between(first.angle, second.angle).to_degrees();
-    let kind = match (ways[0], ways[1]) {
-        (2, 2) => JunctionKind::X,
-        (2, 1) | (1, 2) if apart < SQUARE_DEG => JunctionKind::Y,
-        (2, 1) | (1, 2) => JunctionKind::T,
-        (1, 1) => JunctionKind::L,
-        _ => return None,
-    };
-    Some(Meeting { kind, at, corridors: pair, reach })
+    Some(Meeting { kind: JunctionKind::X, at, corridors: pair.to_vec(), reach, ways })
 }
 
 /// A corridor's end is looked for so far beyond its walls, metres.
@@ -108,7 +151,7 @@ pub fn ends(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<(us
                 let place = meeting.corridors.iter().position(|c| *c == n);
                 place.is_some_and(|p| {
                     let u = view.place(meeting.at)[0];
-                    (strip.along[side] - u) * sign < meeting.reach[p] + ARM
+                    (strip.along[side] - u) * sign < meeting.reach[p.min(1)] + ARM
                 })
             });
             if !met && let Some(place) = closed(view, strip, side, sign) {

@@ -28,7 +28,7 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
     let mut faces = Faces::new(evidence, |state| state == State::Free);
     let junctions: Vec<Label> = meetings
         .iter()
-        .map(|meeting| (meeting.kind, square(&views, &strips, meeting), meeting.at, meeting.corridors.to_vec()))
+        .map(|meeting| (meeting.kind, square(&views, &strips, meeting), meeting.at, meeting.corridors.clone()))
         .chain(ends.iter().map(|&(n, side, place)| {
             let (strip, view) = (&strips[n], &views[strips[n].direction]);
             let inwards = if side == 0 { strip.width() } else { -strip.width() };
@@ -123,7 +123,7 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
         let meetings = junctions::find(views, &strips);
         let leads = |n: usize| {
             let met = meetings.iter().filter(|m| m.corridors.contains(&n));
-            let reach = met.clone().map(|m| m.reach[usize::from(m.corridors[1] == n)]).sum::<f64>();
+            let reach = met.clone().map(|m| m.reach[usize::from(m.corridors[0] != n)]).sum::<f64>();
             let beyond = strips[n].length() - reach;
             match met.count() {
                 0 => strips[n].length() >= ALONE * strips[n].width(),
@@ -144,7 +144,7 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
 fn extents(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<[f64; 2]> {
     let mut extents: Vec<[f64; 2]> = strips.iter().map(|strip| strip.along).collect();
     for meeting in meetings {
-        for corridor in meeting.corridors {
+        for &corridor in &meeting.corridors {
             let u = views[strips[corridor].direction].place(meeting.at)[0];
             extents[corridor][0] = extents[corridor][0].min(u);
             extents[corridor][1] = extents[corridor][1].max(u);
@@ -155,7 +155,7 @@ fn extents(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<[f64
 
 /// The piece that two corridors share, counter-clockwise.
 fn square(views: &[Turned], strips: &[Strip], meeting: &Meeting) -> Vec<[f64; 2]> {
-    let [one, two] = meeting.corridors.map(|c| &strips[c]);
+    let [one, two] = [0, 1].map(|n| &strips[meeting.corridors[n]]);
     let heading = |strip: &Strip| {
         let angle = views[strip.direction].angle;
         [libm::cos(angle), libm::sin(angle)]
