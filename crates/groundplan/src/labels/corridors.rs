@@ -83,7 +83,9 @@ const FACED_ONCE: f64 = 0.85;
 pub const LONGEST_BAY: f64 = 4.5;
 /// A strip from so many to so many pitches wide may be a row of bays.
 const BAY_WIDTH: (f64, f64) = (0.65, 1.17);
-/// It is none when nearly all of it has structure on a side, and so much has it on the weaker one.
+/// It is none when walls run along both its sides, with hardly a gap.
+const WALLED: f64 = 0.8;
+/// Nor when it is long, nearly all of it has structure on a side, and so much has it on the weaker one.
 const WEAKER: f64 = 0.45;
 /// Strips that overlap across by more than this share of the narrower one are rivals.
 const RIVAL: f64 = 0.25;
@@ -246,8 +248,9 @@ impl<'a> Family<'a> {
         let length = columns.len() as f64 * self.view.cell;
         // Between frames that are closed on both sides and go on and on, it is a cross aisle as wide as a bay.
         let bay = self.pitches.iter().any(|pitch| (BAY_WIDTH.0 * pitch..=BAY_WIDTH.1 * pitch).contains(&width));
-        let aisle = length >= VERY_LONG * width
-            || (length >= LONG * width && faced(1) >= FACED_ONCE * near && weaker >= WEAKER * near);
+        let closed = near >= WALLED * columns.len() as f64 && faced(2) >= WALLED * near;
+        let long = length >= LONG * width && faced(1) >= FACED_ONCE * near && weaker >= WEAKER * near;
+        let aisle = length >= VERY_LONG * width || long || closed;
         if bay && !aisle {
             return false;
         }

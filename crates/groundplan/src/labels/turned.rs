@@ -11,8 +11,9 @@ const CELL: f64 = 0.1;
 /// Pixels this near to a line lie on it, metres, or at least so many pixels.
 const NEAR: (f64, f64) = (0.12, 2.0);
 
-/// Lines with less than this share of a strong line's structure are no sides of corridors: the faces of single goods.
-const STRONG: f64 = 2.0;
+/// Lines with less structure than this, metres, and than this share of a strong line's, are no sides of corridors but
+/// the faces of single goods.
+const STRONG: (f64, f64) = (2.0, 0.08);
 
 /// Nothing gets through where more than this share is not free, or more than this is barred by a wall, be it thin.
 const IMPASSABLE: f64 = 0.8;
@@ -137,7 +138,7 @@ impl Turned {
     fn cover_lines(&mut self, evidence: &Evidence) {
         let frame = &evidence.grid.frame;
         let lines = evidence.lines;
-        let strong = STRONG;
+        let strong = STRONG.0.min(STRONG.1 * lines.typical_amplitude());
         self.lines = (0..lines.len())
             .filter(|&n| lines.directions[n] as usize == self.direction && lines.amplitudes[n] >= strong)
             .collect();
