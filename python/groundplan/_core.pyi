@@ -7,6 +7,7 @@ __all__ = [
     "find_adjacency",
     "find_directions",
     "find_gradients",
+    "find_labels",
     "find_lines",
     "find_occupancy",
     "find_radiograms",
@@ -52,3 +53,13 @@ def find_occupancy(
 ) -> _Record: ...
 def find_walls(subdivision: _Record, occupancy: _Record, parameters: _Record) -> _Record: ...
 def find_adjacency(subdivision: _Record, walls: _Record) -> _Record: ...
+def find_labels(
+    layout: _Layout,
+    gradients: _Record,
+    directions: _Record,
+    lines: _Record,
+    occupancy: _Record,
+    walls: _Record,
+    parameters: _Record,
+    threads: int,
+) -> list[_Record]: ...

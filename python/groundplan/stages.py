@@ -1,9 +1,9 @@
 """The method's stages, each a pure function, and what each makes.
 
     find_gradients -> find_directions -> find_radiograms -> find_lines -> subdivide -> find_occupancy
-        -> find_walls -> find_adjacency
+        -> find_walls -> find_adjacency -> find_labels
 
-``groundplan.survey()`` is these in a row, with labels at the end. A researcher replaces one of them and hands its
+``groundplan.survey()`` is these in a row. A researcher replaces one of them and hands its
 result to ``groundplan.survey(map, directions=..., lines=...)``. Lengths are metres, angles radians, points in the map
 frame; an id that is none (the line of a border edge, the face outside) is `NONE`. Section numbers are those of
 Gholami Shahbandi, Åstrand and Philippsen (ICARCV 2014).
@@ -377,3 +377,20 @@ def find_walls(subdivision: Subdivision, occupancy: Occupancy, **parameters: Any
 def find_adjacency(subdivision: Subdivision, walls: Walls) -> Adjacency:
     """II-D, II-E: a node for each face, a link for each edge between two faces."""
     return made(Adjacency, _core.find_adjacency(record(subdivision), record(walls)))
+
+
+def find_labels(
+    map: Map,
+    directions: Directions,
+    lines: Lines,
+    occupancy: Occupancy,
+    walls: Walls,
+    gradients: Gradients | None = None,
+    *,
+    threads: int | None = None,
+    **parameters: Any,
+) -> list[dict[str, Any]]:
+    """II-E: what is what, as the survey's JSON has it: corridors, junctions, racks."""
+    gradients = gradients or find_gradients(map, threads=threads, **parameters)
+    stages = record(gradients), record(directions), record(lines), record(occupancy), record(walls)
+    return _core.find_labels(layout(map), *stages, named(parameters), threads or cores())

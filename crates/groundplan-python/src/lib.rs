@@ -9,7 +9,9 @@ mod convert;
 mod _core {
     use crate::convert::{self, Layout, Named};
     use groundplan::directions::Directions;
-    use groundplan::{Given, TABLE, adjacency, arrangement, directions, gradients, lines, occupancy, radiograms};
+    use groundplan::{
+        Given, TABLE, adjacency, arrangement, directions, gradients, labels, lines, occupancy, radiograms,
+    };
     use groundplan::{subdivision::Subdivision, walls};
     use pyo3::prelude::*;
     use pyo3::types::PyDict;
@@ -201,5 +203,45 @@ mod _core {
         let (subdivision, walls) = (convert::subdivision(subdivision)?, convert::walls(walls)?);
         convert::demand_subdivision(&subdivision, subdivision.faces(), walls.cogent.len())?;
         convert::from_adjacency(py, &adjacency::find_adjacency(&subdivision, &walls))
+    }
+
+    /// II-E: what is what.
+    #[pyfunction]
+    #[expect(clippy::too_many_arguments, reason = "one for each stage that the labels are found from")]
+    fn find_labels<'py>(
+        py: Python<'py>,
+        layout: Layout<'py>,
+        gradients: &Bound<'py, PyDict>,
+        directions: &Bound<'py, PyDict>,
+        lines: &Bound<'py, PyDict>,
+        occupancy: &Bound<'py, PyDict>,
+        walls: &Bound<'py, PyDict>,
+        parameters: &Bound<'py, PyDict>,
+        threads: usize,
+    ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let (directions, lines) = (convert::directions(directions)?, convert::lines(lines)?);
+        convert::demand_directions(&lines, &directions)?;
+        let (gradients, parameters) = (convert::gradients(gradients)?, convert::parameters(parameters)?);
+        let frame = layout.frame();
+        convert::demand_grid(&gradients, &frame)?;
+        let subdivision = Subdivision::new(&frame, &arrangement::arrange(&frame, &directions.angles, &lines));
+        let (occupancy, walls) = (convert::occupancy(occupancy)?, convert::walls(walls)?);
+        let states = occupancy.states.len().min(occupancy.faces.len());
+        convert::demand_subdivision(&subdivision, states, occupancy.edges.len().min(walls.cogent.len()))?;
+        let adjacency = adjacency::find_adjacency(&subdivision, &walls);
+        let made = layout.with_grid(py, |grid| {
+            labels::find_labels(&labels::Evidence {
+                grid,
+                gradients: &gradients,
+                directions: &directions,
+                lines: &lines,
+                subdivision: &subdivision,
+                occupancy: &occupancy,
+                adjacency: &adjacency,
+                parameters: &parameters,
+                threads,
+            })
+        })?;
+        convert::from_labels(py, &made)
     }
 }

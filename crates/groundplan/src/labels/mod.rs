@@ -151,21 +151,32 @@ impl Purpose {
     }
 }
 
-/// What the labels are found from.
-pub(crate) struct Evidence<'a> {
+/// What the labels are found from: the map, and what the stages before made of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Evidence<'a> {
+    /// The map.
     pub grid: &'a Grid<'a>,
+    /// II-A: oriented gradients.
     pub gradients: &'a Gradients,
+    /// II-A: dominant directions.
     pub directions: &'a Directions,
+    /// II-B: lines.
     pub lines: &'a Lines,
+    /// II-C: vertices, edges, faces.
     pub subdivision: &'a Subdivision,
+    /// II-D: O(face), O(edge).
     pub occupancy: &'a Occupancy,
+    /// II-D: the dual.
     pub adjacency: &'a Adjacency,
+    /// How to find them.
     pub parameters: &'a Parameters,
+    /// At most so many.
     pub threads: usize,
 }
 
 /// Finds the labels by the method that the parameters name; corridors first.
-pub(crate) fn find_labels(evidence: &Evidence) -> Vec<Label> {
+#[must_use]
+pub fn find_labels(evidence: &Evidence) -> Vec<Label> {
     match evidence.parameters.labels_method {
         Method::Strips => strips::find(evidence),
         Method::Paper => paper::find(evidence),
