@@ -86,7 +86,9 @@ def test_no_command_shows_the_help_and_is_wrong_usage(capsys: Capture) -> None:
         ("evaluate", "SURVEY and its TRUTH", "groundplan evaluate --help"),
         ("evaluate s.json t.json --methods paper", "--methods goes with --suite", "groundplan evaluate --help"),
         ("evaluate s.json t.json --suite warehouses", "--suite makes its own surveys", "groundplan evaluate --help"),
-        ("evaluate --suite offices", "no suite 'offices'", "there are: warehouses"),
+        ("evaluate --suite castles", "no suite 'castles'", "there are: offices, rooms, warehouses"),
+        ("evaluate --suite rooms --maps nowhere", "no maps with a ground truth in nowhere", "--maps DIR"),
+        ("simulate office -o x --shape star", "invalid choice: 'star'", "groundplan simulate office --help"),
         ("evaluate --suite warehouses --methods magic", "labels.method cannot be", "paper"),
     ],
 )
@@ -245,7 +247,9 @@ def test_a_suite_compares_the_methods(capsys: Capture, monkeypatch: pytest.Monke
     monkeypatch.setattr(
         _suite,
         "suite",
-        lambda name: [Case("one", "regular", {"seed": 1, **small}), Case("two", "hard", {"seed": 2, **small})],
+        lambda name, maps: [
+            Case(n, k, "warehouse", {"seed": s, **small}) for n, k, s in (("one", "regular", 1), ("two", "hard", 2))
+        ],
     )
     ran = call(capsys, "evaluate", "--suite", "warehouses", "--workers", "1", "--json")
     result = json.loads(ran.out)

@@ -19,11 +19,17 @@ SCORES = {
     "junction_typed_f1": ("junctions of the right type, F1", "", 3),
     "corridor_recall": ("corridors found, of their length", "", 3),
     "corridor_precision": ("corridors that are ones, of their area", "", 3),
+    "iou_1to1": ("rooms found, one to one, of their union", "", 3),
+    "mcc": ("agreement on rooms, Matthews", "", 3),
+    "rooms": ("rooms", "", 0),
+    "regions": ("regions found", "", 0),
 }
 
 #: Columns of the suite's table: those before the labels are the same for every method.
 BEFORE = {"direction_error_deg": "error", "direction_extra": "extra", "line_recall": "lines"}
 LABELS = {"junction_f1": "F1", "junction_typed_f1": "typed", "corridor_recall": "recall", "corridor_precision": "prec"}
+#: Of a suite of rooms, in place of those.
+REGIONS = {"iou_1to1": "IoU", "mcc": "MCC", "rooms": "rooms", "regions": "found"}
 
 
 def fill(own: argparse.ArgumentParser) -> None:
@@ -32,9 +38,14 @@ def fill(own: argparse.ArgumentParser) -> None:
     own.add_argument("survey", metavar="SURVEY", nargs="?", help="a survey.json")
     own.add_argument("truth", metavar="TRUTH", nargs="?", help="a truth.json, as groundplan simulate writes it")
     own.add_argument("--json", action="store_true", help="print the scores as JSON")
-    group = own.add_argument_group("a suite of simulated maps")
+    group = own.add_argument_group("a suite of maps")
     group.add_argument(
-        "--suite", metavar="NAME", help="simulate, survey and score each of its cases, such as warehouses"
+        "--suite", metavar="NAME", help="survey and score each of its cases: warehouses, offices or rooms"
+    )
+    group.add_argument(
+        "--maps",
+        metavar="DIR",
+        help="where the maps of the suite rooms lie (default: $GROUNDPLAN_ROOM_MAPS, or ../shared/maps/bormann)",
     )
     group.add_argument(
         "--methods",
@@ -54,7 +65,7 @@ def run(arguments: argparse.Namespace) -> None:
         return
     if arguments.truth is None:
         arguments.parser.error("a SURVEY and its TRUTH are needed, or --suite NAME")
-    for flag in ("methods", "workers"):
+    for flag in ("methods", "workers", "maps"):
         if getattr(arguments, flag) is not None:
             arguments.parser.error(f"--{flag} goes with --suite")
     from groundplan.evaluate import score
@@ -78,6 +89,7 @@ def _run_suite(arguments: argparse.Namespace) -> None:
             arguments.suite,
             arguments.methods,
             workers=arguments.workers,
+            maps=arguments.maps,
             progress=lambda done, total: status(f"{done} of {total} cases"),
         )
     if arguments.json:
@@ -103,10 +115,12 @@ def suite_table(result: dict[str, Any]) -> str:
     rows += [("mean", kind, part["means"]) for kind, part in result["kinds"].items() if len(result["kinds"]) > 1]
     rows += [(name, "all", result[key]) for name, key in (("mean", "means"), ("worst", "worst"))]
     below = len(rows) - len(result["cases"])
-    head = ["case", "kind", *BEFORE.values()]
-    first = [[name, kind, *_cells(by[methods[0]], BEFORE)] for name, kind, by in rows]
+    known = result["means"][methods[0]]
+    same, apart = ({k: name for k, name in part.items() if k in known} for part in (BEFORE, LABELS | REGIONS))
+    head = ["case", "kind", *same.values()]
+    first = [[name, kind, *_cells(by[methods[0]], same)] for name, kind, by in rows]
     cases = _block("", head, first, below)
-    blocks = [_block(m, [*LABELS.values()], [_cells(by[m], LABELS, 2) for *_, by in rows], below) for m in methods]
+    blocks = [_block(m, [*apart.values()], [_cells(by[m], apart, 2) for *_, by in rows], below) for m in methods]
     side_by_side = _beside(cases, *blocks)
     if terminal.has_room(len(side_by_side[1])):
         return "\n".join(side_by_side) + "\n"
@@ -114,7 +128,7 @@ def suite_table(result: dict[str, Any]) -> str:
 
 
 def _cells(scores: dict[str, Any], keys: Iterable[str], decimals: int | None = None) -> list[str]:
-    return [_shown(scores[key], SCORES[key][2] if decimals is None else decimals) for key in keys]
+    return [_shown(scores[key], min(SCORES[key][2], 9 if decimals is None else decimals)) for key in keys]
 
 
 def _block(title: str, head: list[str], rows: list[list[str]], below: int) -> list[str]:

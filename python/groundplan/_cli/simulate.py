@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,17 +22,34 @@ def fill(own: argparse.ArgumentParser) -> None:
         "flags and seed give the same bytes.",
         fill=_fill_warehouse,
     )
+    kinds.add_parser(
+        "office",
+        help="rooms along corridors with doors and furniture, driven and scanned by a robot",
+        description="Write DIR/office.pgm, DIR/office.yaml, DIR/office.gt.png and DIR/truth.json, and print their "
+        "names. The same flags and seed give the same bytes.",
+        fill=_fill_office,
+    )
 
 
 def _fill_warehouse(own: Parser) -> None:
     from groundplan.simulate import WarehouseOptions
 
-    own.usage = "groundplan simulate warehouse -o DIR [--seed N] [flags]"
-    own.set_defaults(parser=own)
+    _fill_place(own, "warehouse", WarehouseOptions)
+
+
+def _fill_office(own: Parser) -> None:
+    from groundplan.simulate import OfficeOptions
+
+    _fill_place(own, "office", OfficeOptions)
+
+
+def _fill_place(own: Parser, place: str, options: type[Any]) -> None:
+    own.usage = f"groundplan simulate {place} -o DIR [--seed N] [flags]"
+    own.set_defaults(parser=own, place=place)
     own.add_argument("-o", "--out", metavar="DIR", type=Path, required=True, help="where the files go")
     own.add_argument("--seed", type=_seed, default=0, metavar="N", help="zero or more (default: 0)")
-    group = own.add_argument_group("the warehouse")
-    for option in dataclasses.fields(WarehouseOptions):
+    group = own.add_argument_group(f"the {place}")
+    for option in dataclasses.fields(options):
         group.add_argument("--" + option.name.replace("_", "-"), dest=option.name, **_flag(option))
 
 
@@ -43,6 +61,8 @@ def _flag(option: dataclasses.Field[Any]) -> dict[str, Any]:
         return {"action": "store_true", "default": None, "help": f"{sentence} (default: no)"}
     if "choices" in facts:
         return {"nargs": "+", "choices": facts["choices"], "metavar": "SIDE", "help": f"{sentence} (default: none)"}
+    if "choice" in facts:
+        return {"choices": facts["choice"], "metavar": "WORD", "help": f"{sentence} (default: {default})"}
     unit = f" {facts['unit']}" if "unit" in facts else ""
     return {
         "type": type(default),
@@ -58,15 +78,18 @@ def _seed(text: str) -> int:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Simulate a warehouse."""
-    from groundplan.simulate import WarehouseOptions, warehouse
+    """Simulate a place."""
+    from groundplan import simulate
 
-    names = [option.name for option in dataclasses.fields(WarehouseOptions)]
+    options = {"warehouse": simulate.WarehouseOptions, "office": simulate.OfficeOptions}[arguments.place]
+    make: Callable[..., simulate.Simulated] = getattr(simulate, arguments.place)
+    names = [option.name for option in dataclasses.fields(options)]
     given = {name: value for name in names if (value := getattr(arguments, name)) is not None}
     if "closed_sides" in given:
         given["closed_sides"] = tuple(dict.fromkeys(given["closed_sides"]))
     with terminal.status() as status:
-        made = terminal.working(status, "driving the warehouse", lambda: warehouse(seed=arguments.seed, **given))
-        yaml = made.write(arguments.out)
-    for place in (yaml.with_suffix(".pgm"), yaml, yaml.with_name("truth.json")):
+        made = terminal.working(status, f"driving the {arguments.place}", lambda: make(seed=arguments.seed, **given))
+        yaml = made.write(arguments.out, arguments.place)
+    rooms = [yaml.with_suffix(".gt.png")] if made.rooms is not None else []
+    for place in (yaml.with_suffix(".pgm"), yaml, *rooms, yaml.with_name("truth.json")):
         terminal.put(f"{place}\n")

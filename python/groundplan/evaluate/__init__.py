@@ -11,10 +11,19 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from groundplan._errors import FormatError, ParameterError
-from groundplan.evaluate import _scores
+import numpy as np
+import numpy.typing as npt
 
-__all__ = ["Case", "score", "suite", "suites"]
+from groundplan._errors import FormatError, ParameterError
+from groundplan.evaluate import _regions, _scores
+from groundplan.maps import Map
+
+__all__ = ["Case", "score", "score_regions", "suite", "suites"]
+
+#: Where the maps of the suite ``rooms`` lie, if no other place is given.
+MAPS = "GROUNDPLAN_ROOM_MAPS"
+_BESIDE = Path("../shared/maps/bormann")
+_TRUTH = ".gt.png"
 
 Document: TypeAlias = Mapping[str, Any] | str | os.PathLike[str]
 
@@ -27,12 +36,15 @@ class Case:
     ----------
     name, kind : str
         What it is called, and the part of the suite that it belongs to, such as ``regular`` or ``hard``.
+    place : str
+        What is simulated, ``warehouse`` or ``office``; ``map`` where a map is read.
     options : dict
-        Of the simulation, its seed among them.
+        Of the simulation, its seed among them; of a map its files, ``map`` and ``truth``.
     """
 
     name: str
     kind: str
+    place: str
     options: dict[str, Any]
 
 
@@ -105,21 +117,95 @@ def _document(source: Document, what: str, needed: tuple[str, ...]) -> dict[str,
     return dict(content)
 
 
+def score_regions(survey: Document, map: Map, truth: str | os.PathLike[str] | npt.NDArray[np.uint8]) -> dict[str, Any]:
+    """Score a survey's regions against a ground truth picture of rooms.
+
+    Parameters
+    ----------
+    survey
+        A survey.json, or the path of one.
+    map
+        What was surveyed; where it is lighter than 249 no region counts.
+    truth
+        The picture, or its (height, width) uint8 pixels: more than 250 in a room, darker between rooms, as
+        Bormann et al. (2016) draw theirs and as `groundplan simulate office` writes it.
+
+    Returns
+    -------
+    dict
+        iou_1to1
+            Sum of intersection over union of the best one-to-one assignment, over the greater number of regions.
+        mcc
+            Mean Matthews correlation of greedily paired regions, on what is labelled on both sides.
+        rooms, regions
+            How many there are, and how many were found; of more than 100 pixels each.
+
+    Raises
+    ------
+    FormatError
+        A survey that is not one, or a picture of another size than the map's.
+    MapError
+        A picture that cannot be read.
+    GroundplanError
+        ``extra.missing`` without SciPy.
+    """
+    found = _document(survey, "survey", ("labels",))
+    true = _regions.truth_labels(truth) if isinstance(truth, np.ndarray) else _regions.read_truth(Path(truth))
+    if true.shape != map.pixels.shape:
+        sizes = [f"{width} x {height}" for height, width in (true.shape, map.pixels.shape)]
+        raise FormatError("truth.size", f"the ground truth has {sizes[0]} pixels and the map {sizes[1]}")
+    try:
+        return _regions.region_scores(_regions.region_labels(found, map.pixels), true)
+    except (KeyError, IndexError, TypeError, ValueError) as fault:
+        raise FormatError("score.format", f"the survey is not one: {fault}") from fault
+
+
 def suites() -> list[str]:
     """Names of the suites that come with Groundplan."""
     here = resources.files("groundplan.evaluate")
-    return sorted(f.name.removesuffix(".toml") for f in here.iterdir() if f.name.endswith(".toml"))
+    return sorted(["rooms", *(f.name.removesuffix(".toml") for f in here.iterdir() if f.name.endswith(".toml"))])
 
 
-def suite(name: str) -> list[Case]:
+def suite(name: str, maps: str | os.PathLike[str] | None = None) -> list[Case]:
     """The cases of a suite.
+
+    Parameters
+    ----------
+    name
+        ``warehouses`` and ``offices`` are simulated, ``rooms`` are the maps of Bormann et al. (2016), which are not
+        ours to give away.
+    maps
+        Where those lie: ``<name>.yaml`` and ``<name>_furnitures.yaml`` beside ``<name>.gt.png``. By default what the
+        environment's GROUNDPLAN_ROOM_MAPS says, or ../shared/maps/bormann.
 
     Raises
     ------
     ParameterError
-        ``suite.unknown``.
+        ``suite.unknown``, or ``suite.maps`` where there are no maps.
     """
     if name not in suites():
         raise ParameterError("suite.unknown", f"no suite {name!r}", f"there are: {', '.join(suites())}")
+    if name == "rooms":
+        return _rooms(Path(maps or os.environ.get(MAPS) or _BESIDE))
     text = (resources.files("groundplan.evaluate") / f"{name}.toml").read_text(encoding="utf-8")
-    return [Case(case.pop("name"), case.pop("kind"), case) for case in tomllib.loads(text)["case"]]
+    place = name.removesuffix("s")
+    return [Case(case.pop("name"), case.pop("kind"), place, case) for case in tomllib.loads(text)["case"]]
+
+
+def _rooms(maps: Path) -> list[Case]:
+    """The unfurnished maps and then the furnished ones."""
+    truths = sorted(maps.glob("*" + _TRUTH))
+    cases = []
+    for kind, suffix in (("empty", ""), ("furnished", "_furnitures")):
+        for truth in truths:
+            name = truth.name.removesuffix(_TRUTH) + suffix
+            if (maps / f"{name}.yaml").is_file():
+                files = {"map": str(maps / f"{name}.yaml"), "truth": str(truth)}
+                cases.append(Case(name, kind, "map", files))
+    if not cases:
+        raise ParameterError(
+            "suite.maps",
+            f"no maps with a ground truth in {maps}",
+            f"--maps DIR or {MAPS} says where the maps of Bormann et al. lie",
+        )
+    return cases

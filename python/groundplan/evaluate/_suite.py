@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import math
 import multiprocessing
+import os
 import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from groundplan import simulate
 from groundplan._errors import GroundplanError
-from groundplan.evaluate import _scores, score, suite
+from groundplan.evaluate import Case, _scores, score, score_regions, suite
+from groundplan.maps import Map, read
 from groundplan.parameters import resolve, table
 from groundplan.stages import cores
 from groundplan.survey import survey
@@ -33,6 +38,7 @@ def run(
     *,
     workers: int | None = None,
     progress: Callable[[int, int], None] | None = None,
+    maps: str | os.PathLike[str] | None = None,
 ) -> dict[str, Any]:
     """Score methods on every case of a suite.
 
@@ -41,11 +47,13 @@ def run(
     name
         Of the suite.
     chosen
-        Values of ``labels.method``; by default those of `methods`.
+        Values of ``labels.method``; by default those of `methods`, and of regions the first: the paper has none.
     workers
         Processes; by default one for each core, and 1 is this process. Any number gives the same scores.
     progress
         Called with how many cases are done, and how many there are.
+    maps
+        Where the maps of the suite ``rooms`` lie.
 
     Returns
     -------
@@ -61,13 +69,14 @@ def run(
     GroundplanError
         ``extra.missing`` without SciPy or Shapely, ``suite.worker`` when a worker process ends early.
     """
-    labellers = tuple(dict.fromkeys(chosen or methods()))
+    cases = suite(name, maps)
+    usual = methods() if cases[0].place == "warehouse" else methods()[:1]
+    labellers = tuple(dict.fromkeys(chosen or usual))
     for method in labellers:
         resolve({"labels.method": method})
-    cases = suite(name)
     for module in ("scipy.optimize", "shapely"):
         _scores.optional(module)
-    scores = _scored([case.options for case in cases], labellers, workers or cores(), progress or (lambda *_: None))
+    scores = _scored(cases, labellers, workers or cores(), progress or (lambda *_: None))
     kinds = {
         kind: _summary([by for case, by in zip(cases, scores, strict=True) if case.kind == kind], labellers)
         for kind in dict.fromkeys(case.kind for case in cases)
@@ -93,20 +102,20 @@ def _summary(scores: list[dict[str, dict[str, Any]]], labellers: tuple[str, ...]
 
 
 def _scored(
-    cases: list[dict[str, Any]], labellers: tuple[str, ...], workers: int, progress: Callable[[int, int], None]
+    cases: list[Case], labellers: tuple[str, ...], workers: int, progress: Callable[[int, int], None]
 ) -> list[dict[str, dict[str, Any]]]:
     """Scores of each case by method, in the order of the cases."""
     if workers == 1:
         scores = []
-        for options in cases:
-            scores.append(_case(options, labellers))
+        for case in cases:
+            scores.append(_case(case, labellers))
             progress(len(scores), len(cases))
         return scores
     # Spawned, not forked: the same on every system, and safe whatever threads the caller has.
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(min(workers, len(cases)), context, _die_of_interrupts) as pool:
         try:
-            futures = [pool.submit(_case, options, labellers) for options in cases]
+            futures = [pool.submit(_case, case, labellers) for case in cases]
             for done, future in enumerate(as_completed(futures), start=1):
                 future.result()
                 progress(done, len(cases))
@@ -127,11 +136,30 @@ def _die_of_interrupts() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def _case(options: dict[str, Any], labellers: tuple[str, ...]) -> dict[str, dict[str, Any]]:
+def _case(case: Case, labellers: tuple[str, ...]) -> dict[str, dict[str, Any]]:
     """Scores of one case by method."""
-    made = simulate.warehouse(**options)
-    surveys = {method: survey(made.map, threads=1, labels_method=method) for method in labellers}
-    return {method: score(found.to_dict(), made.truth) for method, found in surveys.items()}
+    if case.place == "warehouse":
+        made = simulate.warehouse(**case.options)
+        return _each(labellers, made.map, lambda found: score(found, made.truth))
+    if case.place == "office":
+        made = simulate.office(**case.options)
+        rooms = made.rooms
+        assert rooms is not None
+        return _each(labellers, made.map, lambda found: _office(found, made, rooms))
+    map = read(case.options["map"])
+    return _each(labellers, map, lambda found: score_regions(found, map, case.options["truth"]))
+
+
+def _office(found: dict[str, Any], made: simulate.Simulated, rooms: npt.NDArray[np.uint8]) -> dict[str, Any]:
+    """An office's lines and regions; its few corridors say little."""
+    lines = {key: value for key, value in score(found, made.truth).items() if key.startswith(("direction", "line"))}
+    return lines | score_regions(found, made.map, rooms)
+
+
+def _each(
+    labellers: tuple[str, ...], map: Map, scored: Callable[[dict[str, Any]], dict[str, Any]]
+) -> dict[str, dict[str, Any]]:
+    return {method: scored(survey(map, threads=1, labels_method=method).to_dict()) for method in labellers}
 
 
 def _over(kind: Callable[[str, list[float]], float], scores: list[dict[str, Any]]) -> dict[str, float | None]:

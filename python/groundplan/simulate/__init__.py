@@ -1,8 +1,9 @@
 """Maps of places that never were, with exact truth: a ground plan is laid out, driven through and scanned.
 
     options (_options) -> halls (_hall, _uneven, _staggered, _halls) -> plan (_warehouse, _goods) -> network (_plan)
+    options (_options) -> corridors and strips (_strips) -> plan (_office, _furniture) -> network (_plan)
     plan -> raster (_raster) -> drive (_drive, _drift) -> scans and map (_lidar)
-    plan, network and map -> truth (_truth)
+    plan, network and map -> truth (_truth, _rooms)
 
 All is seeded: the same options and seed give the same bytes.
 """
@@ -11,12 +12,13 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import io
 import json
 import math
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -27,13 +29,17 @@ from groundplan.maps import _map
 from groundplan.simulate._drift import Drift
 from groundplan.simulate._drive import explored, route, scan_poses
 from groundplan.simulate._lidar import UNKNOWN, cast, grid_map
-from groundplan.simulate._options import WarehouseOptions
-from groundplan.simulate._plan import Point, network
+from groundplan.simulate._office import office_plan
+from groundplan.simulate._options import OfficeOptions, WarehouseOptions
+from groundplan.simulate._plan import GroundPlan, Point, network
 from groundplan.simulate._raster import rasterise
+from groundplan.simulate._rooms import rooms
 from groundplan.simulate._truth import Picture, truth
 from groundplan.simulate._warehouse import warehouse_plan
 
-__all__ = ["Simulated", "WarehouseOptions", "warehouse"]
+__all__ = ["OfficeOptions", "Simulated", "WarehouseOptions", "office", "warehouse"]
+
+Options = TypeVar("Options", WarehouseOptions, OfficeOptions)
 
 _PAD = 20  # unknown pixels left round what was seen
 
@@ -48,14 +54,18 @@ class Simulated:
         As map_server would read it: 0 occupied, 205 unknown, 254 free.
     truth : dict
         ``directions``, ``lines``, ``corridors``, ``junctions`` as `groundplan evaluate` wants them, in the map
-        frame; besides ``ends`` (dead ends), ``options`` and ``seed``.
+        frame; besides ``ends`` (dead ends), ``options`` and ``seed``; of an office also ``rooms`` {polygon, holes,
+        use, observed} and ``doors`` {at, width, a, b, state, observed}, where a and b are numbers of rooms.
+    rooms : (height, width) uint8, or None
+        Of an office, its rooms: more than 250 in a room, dark between rooms, as Bormann et al. (2016) draw theirs.
     """
 
     map: _map.Map
     truth: dict[str, Any]
+    rooms: npt.NDArray[np.uint8] | None = None
 
     def write(self, directory: str | os.PathLike[str], name: str = "warehouse") -> Path:
-        """Write ``<name>.pgm``, ``<name>.yaml`` and ``truth.json``, each whole or not at all.
+        """Write ``<name>.pgm``, ``<name>.yaml``, ``truth.json`` and of an office ``<name>.gt.png``, each whole or not.
 
         Returns
         -------
@@ -80,6 +90,8 @@ class Simulated:
             "occupied_thresh: 0.65",
             "free_thresh: 0.196",
         ]
+        if self.rooms is not None:
+            write_bytes(place / f"{name}.gt.png", _png(self.rooms))
         write_text(place / "truth.json", json.dumps(self.truth, indent=1) + "\n")
         write_text(place / f"{name}.yaml", "\n".join(lines) + "\n")
         return place / f"{name}.yaml"
@@ -102,7 +114,34 @@ def warehouse(options: WarehouseOptions | None = None, seed: int = 0, **changes:
     ParameterError
         An option that is not known, out of its range, or that leaves no room.
     """
-    names = [item.name for item in dataclasses.fields(WarehouseOptions)]
+    made = _options(options or WarehouseOptions(), seed, changes)
+    return _simulated(warehouse_plan(made, _stream(seed, 0)), made, seed, made.partial)
+
+
+def office(options: OfficeOptions | None = None, seed: int = 0, **changes: Any) -> Simulated:
+    """Lay out an office, drive a robot through it and give the map that it makes.
+
+    Parameters
+    ----------
+    options
+        What it is like; by default one corridor with rooms on both sides.
+    seed
+        Zero or more. The same options and seed give the same bytes.
+    **changes
+        Single options by name, over `options`.
+
+    Raises
+    ------
+    ParameterError
+        An option that is not known, out of its range, or that leaves no room.
+    """
+    made = _options(options or OfficeOptions(), seed, changes)
+    return _simulated(office_plan(made, _stream(seed, 0)), made, seed)
+
+
+def _options(options: Options, seed: int, changes: dict[str, Any]) -> Options:
+    """The options with single ones changed, once all is known to be right."""
+    names = [item.name for item in dataclasses.fields(options)]
     for name in changes:
         if name not in names:
             near = difflib.get_close_matches(name, names, 1)
@@ -111,15 +150,22 @@ def warehouse(options: WarehouseOptions | None = None, seed: int = 0, **changes:
             )
     if seed < 0:
         raise ParameterError("simulate.seed", f"seed is {seed}, not zero or more")
-    options = dataclasses.replace(options or WarehouseOptions(), **changes)
-    # One stream for each part, so that more noise does not move the racks.
-    layout, exploration, wander, sensing, bending = (
-        np.random.Generator(np.random.PCG64([seed, part])) for part in range(5)
-    )
-    plan = warehouse_plan(options, layout)
-    net = network(plan.corridors)
+    return dataclasses.replace(options, **changes)
+
+
+def _stream(seed: int, part: int) -> np.random.Generator:
+    """One stream for each part, so that more noise does not move the racks."""
+    return np.random.Generator(np.random.PCG64([seed, part]))
+
+
+def _simulated(
+    plan: GroundPlan, options: WarehouseOptions | OfficeOptions, seed: int, partial: float = 0.0
+) -> Simulated:
+    """Drive through a plan, scan it, and tell the truth about it."""
+    exploration, wander, sensing, bending = (_stream(seed, part) for part in (1, 2, 3, 4))
+    net = network([*plan.corridors, *plan.ways])
     world = rasterise(plan)
-    roads, looks = explored(net, options.partial, exploration)
+    roads, looks = explored(net, partial, exploration)
     points = route(net, roads, looks)
     poses = scan_poses(points, options.scan_every, world, exploration)
     ranges = cast(world, [p for p, _ in poses], options.beams, options.lidar_range, options.noise, sensing)
@@ -145,10 +191,14 @@ def warehouse(options: WarehouseOptions | None = None, seed: int = 0, **changes:
     pixels = grid_map(believed, ranges, options.lidar_range, corner, shape, options.resolution)
     pixels, corner = _cropped(pixels, corner, options.resolution)
     picture = Picture(pixels[::-1], corner, options.resolution)
-    facts = truth(plan, net, picture, lambda p: turned(drift.bend(p)), yaw)
+    facts = truth(plan, network(plan.corridors), picture, lambda p: turned(drift.bend(p)), yaw)
+    shown = None
+    if plan.rooms:
+        facts_of_rooms, shown = rooms(plan, picture, lambda p: turned(drift.bend(p)))
+        facts |= facts_of_rooms
     facts["options"] = {k: list(v) if isinstance(v, tuple) else v for k, v in dataclasses.asdict(options).items()}
     facts["seed"] = seed
-    return Simulated(_trinary(pixels, options.resolution, corner), facts)
+    return Simulated(_trinary(pixels, options.resolution, corner), facts, shown)
 
 
 def _cropped(pixels: npt.NDArray[np.uint8], corner: Point, resolution: float) -> tuple[npt.NDArray[np.uint8], Point]:
@@ -170,3 +220,11 @@ def _trinary(pixels: npt.NDArray[np.uint8], resolution: float, corner: Point) ->
     values = np.full(256, -1, dtype=np.int8)
     values[states == _map.OCCUPIED], values[states == _map.FREE] = 100, 0
     return _map.Map(pixels, values, states, resolution, (corner[0], corner[1], 0.0), "warehouse.pgm")
+
+
+def _png(pixels: npt.NDArray[np.uint8]) -> bytes:
+    from PIL import Image
+
+    stream = io.BytesIO()
+    Image.fromarray(pixels).save(stream, "PNG")
+    return stream.getvalue()

@@ -81,7 +81,7 @@ def _leave(plan: GroundPlan, corridor: Corridor, random: np.random.Generator) ->
 
 def _clear(corridor: Corridor, at: Point, radius: float) -> bool:
     """Does a thing of this radius leave the robot's strip along the corridor free?"""
-    return _near(corridor, at) > radius + _CLEAR
+    return near(corridor, at) > radius + _CLEAR
 
 
 def floor_goods(plan: GroundPlan, options: WarehouseOptions, random: np.random.Generator) -> None:
@@ -102,12 +102,12 @@ def floor_goods(plan: GroundPlan, options: WarehouseOptions, random: np.random.G
                 at = corridor.a[0] + along * ux - side * shy * uy, corridor.a[1] + along * uy + side * shy * ux
                 turn = math.atan2(uy, ux) + float(random.normal(0.0, 0.03))
                 # Not on a crossing: no other way may pass here.
-                if along > length or any(_near(o, at) < o.width / 2 + 1.0 for o in plan.corridors if o is not corridor):
+                if along > length or any(near(o, at) < o.width / 2 + 1.0 for o in plan.corridors if o is not corridor):
                     break
                 plan.box(at, *_PALLET, turn)
 
 
-def _near(corridor: Corridor, at: Point) -> float:
+def near(corridor: Corridor, at: Point) -> float:
     """Distance from a corridor's centre line."""
     ux, uy = corridor.b[0] - corridor.a[0], corridor.b[1] - corridor.a[1]
     t = ((at[0] - corridor.a[0]) * ux + (at[1] - corridor.a[1]) * uy) / (ux * ux + uy * uy)

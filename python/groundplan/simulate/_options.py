@@ -1,4 +1,4 @@
-"""The options of a simulated warehouse, each with its default, range and sentence."""
+"""The options of simulated places, each with its default, range and sentence."""
 
 from __future__ import annotations
 
@@ -8,12 +8,45 @@ from typing import Any
 
 from groundplan._errors import ParameterError
 
+SHAPES = ("straight", "L", "T", "ring")
 SIDES = ("south", "east", "north", "west")
 
 
 def _option(default: Any, text: str, **more: Any) -> Any:
     """A dataclass field with its sentence; `least` and `most` bound a number, `unit` stands in the help."""
     return dataclasses.field(default=default, metadata={"help": text, **more})
+
+
+#: Options of the robot and its map, the same for every kind of place.
+_ROBOT: dict[str, tuple[Any, str, dict[str, Any]]] = {
+    "bend": (
+        0.0,
+        "How far the map bends walls and rows, smoothly over tens of metres, at most.",
+        {"unit": "m", "least": 0.0, "most": 0.5},
+    ),
+    "drift": (0.02, "Error of the robot's poses that bends and doubles.", {"unit": "m", "least": 0.0, "most": 1.0}),
+    "lidar_range": (15.0, "Greatest range of the lidar.", {"unit": "m", "least": 2.0, "most": 100.0}),
+    "beams": (600, "Beams in a full turn of the lidar.", {"least": 60, "most": 7200}),
+    "noise": (0.012, "Deviation of a measured range.", {"unit": "m", "least": 0.0, "most": 0.5}),
+    "scan_every": (0.4, "Way driven between two scans.", {"unit": "m", "least": 0.05, "most": 5.0}),
+    "resolution": (0.05, "Side of a pixel.", {"unit": "m", "least": 0.01, "most": 0.5}),
+}
+
+
+def _robot(name: str) -> Any:
+    """The field of one of those."""
+    default, text, more = _ROBOT[name]
+    return _option(default, text, **more)
+
+
+def _hold(options: Any) -> None:
+    """Hold every number to its range."""
+    for item in dataclasses.fields(options):
+        value = getattr(options, item.name)
+        if "least" in item.metadata:
+            least, most = item.metadata["least"], item.metadata["most"]
+            if not least <= value <= most:  # also catches NaN
+                raise ParameterError("simulate.range", f"{item.name} is {value}, not in {least} .. {most}")
 
 
 @dataclass(frozen=True)
@@ -63,28 +96,21 @@ class WarehouseOptions:
     wing: float = _option(
         0.0, "Angle of a wing that is turned against the halls, 0 for no wing.", unit="deg", least=-60.0, most=60.0
     )
-    bend: float = _option(
-        0.0, "How far the map bends rows, smoothly over tens of metres, at most.", unit="m", least=0.0, most=0.5
-    )
-    drift: float = _option(0.02, "Error of the robot's poses that bends and doubles.", unit="m", least=0.0, most=1.0)
+    bend: float = _robot("bend")
+    drift: float = _robot("drift")
     partial: float = _option(0.0, "Share of the ways that the robot does not drive.", least=0.0, most=0.9)
     closed_sides: tuple[str, ...] = _option(
         (), "Sides without an aisle along the wall: south, east, north, west.", choices=SIDES
     )
-    lidar_range: float = _option(15.0, "Greatest range of the lidar.", unit="m", least=2.0, most=100.0)
-    beams: int = _option(600, "Beams in a full turn of the lidar.", least=60, most=7200)
-    noise: float = _option(0.012, "Deviation of a measured range.", unit="m", least=0.0, most=0.5)
-    scan_every: float = _option(0.4, "Way driven between two scans.", unit="m", least=0.05, most=5.0)
-    resolution: float = _option(0.05, "Side of a pixel.", unit="m", least=0.01, most=0.5)
+    lidar_range: float = _robot("lidar_range")
+    beams: int = _robot("beams")
+    noise: float = _robot("noise")
+    scan_every: float = _robot("scan_every")
+    resolution: float = _robot("resolution")
 
     def __post_init__(self) -> None:
         """Hold every value to its range."""
-        for item in dataclasses.fields(self):
-            value = getattr(self, item.name)
-            if "least" in item.metadata:
-                least, most = item.metadata["least"], item.metadata["most"]
-                if not least <= value <= most:  # also catches NaN
-                    raise ParameterError("simulate.range", f"{item.name} is {value}, not in {least} .. {most}")
+        _hold(self)
         for side in self.closed_sides:
             if side not in SIDES:
                 raise ParameterError("simulate.side", f"closed_sides has {side!r}, not one of {', '.join(SIDES)}")
@@ -94,3 +120,42 @@ class WarehouseOptions:
                 "east and west are closed and cross_aisles is 0: nothing joins the aisles",
                 "leave one of the two sides open, or ask for a cross aisle",
             )
+
+
+@dataclass(frozen=True)
+class OfficeOptions:
+    """What a simulated office is like. Each field's metadata holds its help, unit and range.
+
+    Raises
+    ------
+    ParameterError
+        ``simulate.range`` for a value out of its range, ``simulate.shape`` for an unknown shape, ``simulate.small``
+        when nothing fits.
+    """
+
+    shape: str = _option("straight", "How its corridors run: straight, L, T or ring.", choice=SHAPES)
+    width: float = _option(36.0, "Length of the building.", unit="m", least=14.0, most=120.0)
+    depth: float = _option(26.0, "Depth of the building where its corridors turn.", unit="m", least=14.0, most=120.0)
+    yaw: float = _option(0.0, "Angle of the building in the map.", unit="deg", least=-360.0, most=360.0)
+    corridor: float = _option(2.0, "Free width of the corridors.", unit="m", least=1.2, most=5.0)
+    room_width: float = _option(4.0, "Length of a room along the corridor, about.", unit="m", least=2.4, most=12.0)
+    room_depth: float = _option(5.0, "Depth of a room, about.", unit="m", least=3.0, most=12.0)
+    halls: int = _option(0, "Open-plan halls in place of rooms.", least=0, most=8)
+    door: float = _option(0.9, "Width of the doors, about.", unit="m", least=0.7, most=1.8)
+    closed: float = _option(0.0, "Share of the doors that are closed.", least=0.0, most=1.0)
+    half_open: float = _option(0.2, "Share of the doors that are half open.", least=0.0, most=1.0)
+    linked: float = _option(0.1, "Share of neighbouring rooms with a door between them.", least=0.0, most=1.0)
+    furniture: float = _option(0.5, "How much furniture there is, from none to all that fits.", least=0.0, most=1.0)
+    bend: float = _robot("bend")
+    drift: float = _robot("drift")
+    lidar_range: float = _robot("lidar_range")
+    beams: int = _robot("beams")
+    noise: float = _robot("noise")
+    scan_every: float = _robot("scan_every")
+    resolution: float = _robot("resolution")
+
+    def __post_init__(self) -> None:
+        """Hold every value to its range."""
+        _hold(self)
+        if self.shape not in SHAPES:
+            raise ParameterError("simulate.shape", f"shape is {self.shape!r}, not one of {', '.join(SHAPES)}")

@@ -56,6 +56,33 @@ class Corridor:
 
 
 @dataclass(frozen=True)
+class Room:
+    """A piece of floor that walls set apart: its free outline, counter-clockwise, and its holes.
+
+    `use` is ``room``, ``corridor`` or ``hall``.
+    """
+
+    polygon: list[Point]
+    use: str
+    holes: list[list[Point]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Door:
+    """A way through a wall from room `a` to room `b`: `at` is its middle; `state` is open, half or closed.
+
+    `along` is the unit vector along the wall; its left-hand normal points into room `b`.
+    """
+
+    at: Point
+    width: float
+    a: int
+    b: int
+    along: Point
+    state: str
+
+
+@dataclass(frozen=True)
 class Node:
     """A place of the network: `arms` are unit vectors along the corridors that leave it; `width` the widest of them."""
 
@@ -87,6 +114,10 @@ class GroundPlan:
         Convex polygons, counter-clockwise, metres: all that a lidar's plane cuts.
     faces, corridors
         What a survey of a perfect map would find.
+    rooms, doors
+        The same of an office: a warehouse has none.
+    ways : list of Corridor
+        What is driven besides the corridors.
     outline : list of (float, float)
         Corners of the halls: all lies within their box.
     """
@@ -96,6 +127,9 @@ class GroundPlan:
     shapes: list[npt.NDArray[np.float64]] = field(default_factory=list)
     faces: list[Face] = field(default_factory=list)
     corridors: list[Corridor] = field(default_factory=list)
+    rooms: list[Room] = field(default_factory=list)
+    doors: list[Door] = field(default_factory=list)
+    ways: list[Corridor] = field(default_factory=list)
 
     def box(self, centre: Point, length: float, width: float, angle: float = 0.0) -> None:
         """Add a rectangle by its centre, its sides and the angle of its length."""
@@ -187,3 +221,18 @@ def _crossing(one: Corridor, other: Corridor) -> Point | None:
     if not (-0.5 <= s * lu <= lu + 0.5 and -0.5 <= t * lv <= lv + 0.5):
         return None
     return one.a[0] + s * ux, one.a[1] + s * uy
+
+
+def inset(ring: list[Point], by: float) -> list[Point]:
+    """A rectilinear outline, counter-clockwise, made smaller all round (larger where `by` is negative)."""
+    result = []
+    for before, at, after in zip(ring[-1:] + ring[:-1], ring, ring[1:] + ring[:1], strict=True):
+        (ax, ay), (bx, by_) = unit(before, at), unit(at, after)
+        result.append((at[0] - by * (ay + by_), at[1] + by * (ax + bx)))
+    return result
+
+
+def unit(p: Point, q: Point) -> Point:
+    """The unit vector from one point to another."""
+    length = math.dist(p, q)
+    return (q[0] - p[0]) / length, (q[1] - p[1]) / length
