@@ -10,7 +10,7 @@ use super::{Evidence, JunctionKind, Label};
 use crate::grid::{State, tidy};
 
 /// A corridor that meets no other is at least so many times as long as wide.
-const ALONE: f64 = 2.5;
+const ALONE: f64 = 2.0;
 /// A corridor that meets one other goes on beyond it for so many times its width, or it is a niche at its side.
 const NICHE: f64 = 1.5;
 
