@@ -12,7 +12,7 @@ unexport MAKEFLAGS MFLAGS
 # Directories too, so that a file that was taken away counts as a change.
 rust := Cargo.toml Cargo.lock $(shell find crates -type d -o -name '*.rs' -o -name Cargo.toml)
 
-.PHONY: help demo test check bench fuzz docs format clean
+.PHONY: help demo test check bench fuzz docs gallery format clean
 
 help: ## Show this list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 10
@@ -42,6 +42,9 @@ fuzz: ## Random arrangements for a minute; SECONDS=3600 for longer, SEED=n to st
 docs: .venv/.built ## Make anew what the docs show: parameters, scores, the README's picture
 	$(bin)/groundplan parameters --markdown > docs/parameters.md
 	$(bin)/python docs/make.py
+
+gallery: .venv/.built ## Draw the surveys of the maps in ../shared into gallery/; MAPS="name ..." for some
+	$(bin)/python docs/gallery.py $(MAPS)
 
 format: .venv/.installed ## Format both languages, and mend what the linter can
 	cargo fmt --all
