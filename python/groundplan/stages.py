@@ -4,7 +4,8 @@
         -> find_walls -> find_adjacency
 
 ``groundplan.survey()`` is these in a row, with labels at the end. A researcher replaces one of them and hands its
-result to ``groundplan.survey(map, directions=..., lines=...)``. Lengths are metres, angles radians, points in the map
+result to ``groundplan.survey(map, directions=..., lines=...)``. What does not fit a stage is a ParameterError,
+``stage.input``. Lengths are metres, angles radians, points in the map
 frame; an id that is none (the line of a border edge, the face outside) is `NONE`. Section numbers are those of
 Gholami Shahbandi, Åstrand and Philippsen (ICARCV 2014).
 """
@@ -12,6 +13,7 @@ Gholami Shahbandi, Åstrand and Philippsen (ICARCV 2014).
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
@@ -19,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from groundplan import _core
+from groundplan._errors import ParameterError
 from groundplan.maps import Map
 from groundplan.parameters import named
 
@@ -290,6 +293,8 @@ class Adjacency(Stage):
         return len(self.edges)
 
 
+R = TypeVar("R")
+T = TypeVar("T")
 S = TypeVar("S", bound=Stage)
 
 
@@ -301,6 +306,58 @@ def made(kind: type[S], arrays: dict[str, Any]) -> S:
 def record(stage: Stage) -> dict[str, Any]:
     """A stage's arrays as the core takes them, not copied."""
     return {f.name: getattr(stage, f.name) for f in fields(stage)}  # type: ignore[arg-type]
+
+
+#: What makes a stage's input of one's own.
+_MADE_BY = {
+    "Map": "groundplan.read(path) reads one, groundplan.from_array(pixels, resolution) takes an array",
+    "Directions": "groundplan.Directions.of(angles) makes them of angles in radians",
+    "Lines": "groundplan.Lines.of(directions, offsets) makes them of indices and metres",
+}
+
+_SINGULAR = {"vertices": "vertex", "histogram": "value of the histogram"}
+
+
+def needs(kind: type[T], name: str, value: object) -> T:
+    """A stage's input, held to its type.
+
+    Raises
+    ------
+    ParameterError
+        ``stage.input``.
+    """
+    if isinstance(value, kind):
+        return value
+    said = f"{name} has to be {a(kind.__name__)} and is {a(type(value).__name__)}"
+    raise ParameterError("stage.input", said, _MADE_BY.get(kind.__name__))
+
+
+def a(noun: str) -> str:
+    """A noun with its article; a plural goes without."""
+    return noun if noun[0].isupper() and noun.endswith("s") else f"{'an' if noun[0] in 'aeiouAEIO' else 'a'} {noun}"
+
+
+def taken(kind: type[Stage], name: str, value: object) -> dict[str, Any]:
+    """A stage's input as the core takes it, finite and of its type; ``stage.input`` where it is not."""
+    arrays = record(needs(kind, name, value))
+    for part, numbers in arrays.items():
+        if np.asarray(numbers).dtype.kind == "f" and not np.isfinite(numbers).all():
+            raise ParameterError(
+                "stage.input", f"{a(_SINGULAR.get(part, part.removesuffix('s')))} of the {name} is not finite"
+            )
+    return arrays
+
+
+def run(stage: Callable[..., R], *inputs: Any) -> R:
+    """Call the core; inputs that do not fit one another are told as ``stage.input``."""
+    try:
+        return stage(*inputs)
+    except ParameterError:
+        raise
+    except (ValueError, OverflowError) as fault:
+        raise ParameterError("stage.input", str(fault)) from fault
+    except TypeError as fault:
+        raise ParameterError("stage.input", f"an array is not of the type that its stage says: {fault}") from fault
 
 
 def layout(map: Map) -> _core._Layout:
@@ -318,7 +375,8 @@ def cores() -> int:
 
 def find_gradients(map: Map, *, threads: int | None = None, **parameters: Any) -> Gradients:
     """II-A: oriented gradients of the edge pixels."""
-    return made(Gradients, _core.find_gradients(layout(map), named(parameters), threads or cores()))
+    grid = layout(needs(Map, "map", map))
+    return made(Gradients, run(_core.find_gradients, grid, named(parameters), threads or cores()))
 
 
 def find_directions(map: Map, gradients: Gradients | None = None, **parameters: Any) -> Directions:
@@ -326,32 +384,39 @@ def find_directions(map: Map, gradients: Gradients | None = None, **parameters: 
 
     Their number and angles are found unless ``directions_count`` or ``directions_angles_deg`` are given.
     """
-    gradients = gradients or find_gradients(map, **parameters)
-    return made(Directions, _core.find_directions(layout(map), record(gradients), named(parameters)))
+    grid, edges = layout(needs(Map, "map", map)), _gradients(map, gradients, parameters)
+    return made(Directions, run(_core.find_directions, grid, edges, named(parameters)))
 
 
 def find_radiograms(
     map: Map, directions: Directions, gradients: Gradients | None = None, **parameters: Any
 ) -> list[Radiogram]:
     """II-B: the radiogram of each direction."""
-    gradients = gradients or find_gradients(map, **parameters)
-    found = _core.find_radiograms(layout(map), record(gradients), record(directions), named(parameters))
+    grid, along = layout(needs(Map, "map", map)), taken(Directions, "directions", directions)
+    edges = _gradients(map, gradients, parameters)
+    found = run(_core.find_radiograms, grid, edges, along, named(parameters))
     return [made(Radiogram, arrays) for arrays in found]
 
 
 def find_response(radiogram: Radiogram, **parameters: Any) -> Response:
     """II-B: the wavelet response that a radiogram's peaks are read from."""
-    return made(Response, _core.find_response(record(radiogram), named(parameters)))
+    given = taken(Radiogram, "radiogram", radiogram)
+    return made(Response, run(_core.find_response, given, named(parameters)))
 
 
 def find_lines(radiograms: list[Radiogram], **parameters: Any) -> Lines:
     """II-B: the radiograms' peaks as lines."""
-    return made(Lines, _core.find_lines([record(r) for r in radiograms], named(parameters)))
+    if not isinstance(radiograms, list | tuple):
+        raise ParameterError("stage.input", f"radiograms has to be a list and is {a(type(radiograms).__name__)}")
+    given = [taken(Radiogram, f"radiograms[{k}]", radiogram) for k, radiogram in enumerate(radiograms)]
+    return made(Lines, run(_core.find_lines, given, named(parameters)))
 
 
 def subdivide(map: Map, directions: Directions, lines: Lines) -> Subdivision:
     """II-C: vertices, edges and faces of all lines taken across the map."""
-    return made(Subdivision, _core.subdivide(layout(map), record(directions), record(lines)))
+    grid = layout(needs(Map, "map", map))
+    given = taken(Directions, "directions", directions), taken(Lines, "lines", lines)
+    return made(Subdivision, run(_core.subdivide, grid, *given))
 
 
 def find_occupancy(
@@ -364,16 +429,27 @@ def find_occupancy(
     **parameters: Any,
 ) -> Occupancy:
     """II-D: O(face) and O(edge) of the subdivision that the lines make."""
-    gradients = gradients or find_gradients(map, threads=threads, **parameters)
-    stages = record(gradients), record(directions), record(lines)
-    return made(Occupancy, _core.find_occupancy(layout(map), *stages, named(parameters), threads or cores()))
+    grid = layout(needs(Map, "map", map))
+    given = taken(Directions, "directions", directions), taken(Lines, "lines", lines)
+    edges = _gradients(map, gradients, parameters, threads)
+    return made(Occupancy, run(_core.find_occupancy, grid, edges, *given, named(parameters), threads or cores()))
 
 
 def find_walls(subdivision: Subdivision, occupancy: Occupancy, **parameters: Any) -> Walls:
     """II-D: C(edge) = disparity > t1 or O(edge) > t2, and the walls."""
-    return made(Walls, _core.find_walls(record(subdivision), record(occupancy), named(parameters)))
+    given = taken(Subdivision, "subdivision", subdivision), taken(Occupancy, "occupancy", occupancy)
+    return made(Walls, run(_core.find_walls, *given, named(parameters)))
 
 
 def find_adjacency(subdivision: Subdivision, walls: Walls) -> Adjacency:
     """II-D, II-E: a node for each face, a link for each edge between two faces."""
-    return made(Adjacency, _core.find_adjacency(record(subdivision), record(walls)))
+    given = taken(Subdivision, "subdivision", subdivision), taken(Walls, "walls", walls)
+    return made(Adjacency, run(_core.find_adjacency, *given))
+
+
+def _gradients(
+    map: Map, given: Gradients | None, parameters: dict[str, Any], threads: int | None = None
+) -> dict[str, Any]:
+    """The gradients that were given, or those of the map."""
+    found = find_gradients(map, threads=threads, **parameters) if given is None else given
+    return taken(Gradients, "gradients", found)

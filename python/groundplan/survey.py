@@ -27,9 +27,13 @@ from groundplan.stages import (
     Subdivision,
     Walls,
     cores,
+    find_directions,
+    find_gradients,
     layout,
     made,
-    record,
+    needs,
+    run,
+    taken,
 )
 
 if TYPE_CHECKING:
@@ -337,7 +341,7 @@ def survey(
     resolution, origin
         Of an array: metres per pixel, and the pose of its lower left corner (m, m, rad).
     directions, lines
-        Results of your own in place of these stages'.
+        Results of your own in place of these stages'. Lines without directions are of those that are found.
     threads
         At most so many; all cores by default. Any number gives the same survey.
     **parameters
@@ -346,7 +350,7 @@ def survey(
     Raises
     ------
     ParameterError
-        A parameter that is not known or out of its range.
+        A parameter that is not known or out of its range; ``stage.input`` for directions or lines that do not fit.
     MapError
         An array that is no map.
     """
@@ -354,8 +358,15 @@ def survey(
         if resolution is None:
             raise GroundplanError("map.resolution", "an array needs its resolution", "survey(array, resolution=0.05)")
         map = from_array(np.asarray(map), resolution, tuple(origin))
-    given = [record(stage) if stage is not None else None for stage in (directions, lines)]
-    found = _core.survey(layout(map), named(parameters), threads or cores(), *given)
+    if lines is not None and directions is None:
+        needs(Lines, "lines", lines)
+        gradients = find_gradients(map, threads=threads, **parameters)
+        directions = find_directions(map, gradients, **parameters)
+    given = (
+        None if directions is None else taken(Directions, "directions", directions),
+        None if lines is None else taken(Lines, "lines", lines),
+    )
+    found = run(_core.survey, layout(map), named(parameters), threads or cores(), *given)
     stages = {
         "directions": Directions,
         "lines": Lines,
