@@ -15,6 +15,7 @@ import numpy.typing as npt
 from groundplan import _core
 from groundplan._errors import FormatError, GroundplanError
 from groundplan._files import write_text
+from groundplan._format import FORMAT, VERSION, check_format
 from groundplan.maps import Map, MapWarning, from_array
 from groundplan.parameters import named
 from groundplan.stages import (
@@ -39,11 +40,13 @@ from groundplan.stages import (
 if TYPE_CHECKING:
     import networkx
 
-FORMAT, VERSION = "groundplan-survey", 1
 STATES = ("free", "occupied", "unknown")
 
 #: What a label of a kind must have besides its kind.
 NEEDED = {"corridor": ("polygon", "axis", "width"), "junction": ("type", "at")}
+
+#: What can be given for reading a map.
+READING = ("dialect", "unknown", "negate", "mode", "occupied_thresh", "free_thresh", "resolution", "origin")
 
 #: A label: ``kind`` and the keys that the survey's format gives that kind. Plain values, as in the JSON.
 Label = dict[str, Any]
@@ -76,7 +79,10 @@ class Survey(Stage):
     warnings : list of MapWarning
         Partial trouble, the map's own first.
     source : str or None
-        The map's file as it was named on the command line, so that figures can be drawn over it later.
+        The map's file, relative to the directory that the survey is written to, so that figures can be drawn over it
+        later; known where the command line wrote the survey.
+    reading : dict
+        What was given for reading the map, by the names of `groundplan.read`; empty where the file said all.
     """
 
     map: MapInfo
@@ -91,6 +97,7 @@ class Survey(Stage):
     labels: list[Label]
     warnings: list[MapWarning] = field(default_factory=list)
     source: str | None = None
+    reading: dict[str, Any] = field(default_factory=dict)
 
     def problems(self) -> list[str]:
         """Every broken invariant of the subdivision and its pixels, as sentences; an empty list when all hold."""
@@ -112,7 +119,7 @@ class Survey(Stage):
         lines = [None if line < 0 else line for line in cut.edge_lines.tolist()]
         sides = [[None if f < 0 else f for f in pair] for pair in cut.edge_faces.tolist()]
         kinds = ["freestanding" if free else "separating" for free in self.walls.freestanding.tolist()]
-        source = {} if self.source is None else {"source": {"file": self.source}}
+        source = {} if self.source is None else {"source": {"file": self.source, "reading": self.reading}}
         return {
             "format": FORMAT,
             "version": VERSION,
@@ -184,13 +191,7 @@ class Survey(Stage):
             tree = json.loads(text)
         except (ValueError, RecursionError) as fault:
             raise FormatError("survey.json", f"the survey is not JSON: {fault}") from fault
-        if not isinstance(tree, dict) or tree.get("format") != FORMAT:
-            name = tree.get("format") if isinstance(tree, dict) else None
-            raise FormatError("survey.format", f"the format is {name!r} and not {FORMAT!r}")
-        if tree.get("version") != VERSION:
-            raise FormatError(
-                "survey.version", f"version {tree.get('version')!r} of the format is not known, {VERSION} is"
-            )
+        check_format(tree if isinstance(tree, dict) else {})
         try:
             return cls._from_tree(tree)
         except (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError) as fault:
@@ -212,6 +213,7 @@ class Survey(Stage):
 
     @classmethod
     def _from_tree(cls, tree: dict[str, Any]) -> Survey:
+        source = tree.get("source")
         frame, evidence, faces, edges = tree["map"], tree["evidence"], tree["faces"], tree["edges"]
         x, y, yaw = (float(value) for value in frame["origin"])
         width, height = int(frame["width"]), int(frame["height"])
@@ -273,7 +275,8 @@ class Survey(Stage):
             ),
             labels=[checked(label) for label in tree["labels"]],
             warnings=[MapWarning(w["code"], w["message"]) for w in tree["warnings"]],
-            source=str(tree["source"]["file"]) if "source" in tree else None,
+            source=None if source is None else str(source["file"]),
+            reading={} if source is None else checked_reading(source.get("reading", {})),
         )
 
     def to_networkx(self) -> networkx.Graph[int]:
@@ -416,6 +419,14 @@ def checked(label: Any) -> Label:
         if key in ("width", "area"):
             float(value)
     return dict(label)
+
+
+def checked_reading(reading: dict[str, Any]) -> dict[str, Any]:
+    """What a file says of how the map was read, held to the names that there are."""
+    strange = [name for name in reading if name not in READING]
+    if strange:
+        raise ValueError(f"there is no {strange[0]!r} in reading a map")
+    return dict(reading)
 
 
 def dump(value: Any) -> str:

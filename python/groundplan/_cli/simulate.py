@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-from pathlib import Path
 from typing import Any
 
 from groundplan._cli import terminal
-from groundplan._cli.arguments import Parser
+from groundplan._cli.arguments import Parser, place
 
 
 def fill(own: argparse.ArgumentParser) -> None:
@@ -28,7 +27,7 @@ def _fill_warehouse(own: Parser) -> None:
 
     own.usage = "groundplan simulate warehouse -o DIR [--seed N] [flags]"
     own.set_defaults(parser=own)
-    own.add_argument("-o", "--out", metavar="DIR", type=Path, required=True, help="where the files go")
+    own.add_argument("-o", "--out", metavar="DIR", type=place, required=True, help="where the files go")
     own.add_argument("--seed", type=_seed, default=0, metavar="N", help="zero or more (default: 0)")
     group = own.add_argument_group("the warehouse")
     for option in dataclasses.fields(WarehouseOptions):
@@ -68,5 +67,5 @@ def run(arguments: argparse.Namespace) -> None:
     with terminal.status() as status:
         made = terminal.working(status, "driving the warehouse", lambda: warehouse(seed=arguments.seed, **given))
         yaml = made.write(arguments.out)
-    for place in (yaml.with_suffix(".pgm"), yaml, yaml.with_name("truth.json")):
-        terminal.put(f"{place}\n")
+    for file in (yaml.with_suffix(".pgm"), yaml, yaml.with_name("truth.json")):
+        terminal.put(f"{file}\n")

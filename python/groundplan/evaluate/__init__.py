@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from groundplan._errors import FormatError, ParameterError
+from groundplan._format import check_format
 from groundplan.evaluate import _scores
 
 __all__ = ["Case", "score", "suite", "suites"]
@@ -74,6 +75,7 @@ def score(survey: Document, truth: Document) -> dict[str, Any]:
         ``extra.missing`` without SciPy or Shapely.
     """
     found = _document(survey, "survey", ("directions", "lines", "labels"))
+    check_format(found, f"{Path(survey)}: " if isinstance(survey, str | os.PathLike) else "")
     true = _document(truth, "truth", ("directions", "lines", "corridors", "junctions"))
     parts = (_scores.direction_scores, _scores.line_scores, _scores.junction_scores, _scores.corridor_scores)
     result: dict[str, Any] = {}

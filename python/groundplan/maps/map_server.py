@@ -182,6 +182,8 @@ def _image(path: Path, fields: dict[str, object]) -> tuple[Path, list[MapWarning
     image = path.parent / name
     beside = path.parent / name.replace("\\", "/").rsplit("/", 1)[-1]
     try:
+        if image.is_dir():
+            raise MapError("map.directory", f"{path} names the image {name}, which is a directory")
         if image.exists():
             return image, []
         if beside.is_file():
