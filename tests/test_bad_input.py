@@ -214,15 +214,15 @@ def test_a_full_disk_leaves_nothing(limit: int | None, file: str, tmp_path: Path
 @pytest.mark.parametrize(
     ("command", "content", "values"),
     [
-        (("figures", "s.json"), None, ["cannot read s.json", "No such file"]),
+        (("figures", "s.json"), None, ["s.json does not exist"]),
         (("figures", "s.json"), b"{", ["s.json", "not JSON"]),
         (("figures", "s.json"), b"\xff\xfe\x00", ["s.json", "not JSON"]),
         (("figures", "s.json"), b'{"format": "something"}', ["s.json", "'something'"]),
         (("figures", "s.json"), b'{"format": "groundplan-survey", "version": 7}', ["s.json", "version 7"]),
         (("figures", "s.json"), b'{"format": "groundplan-survey", "version": 1}', ["s.json", "map"]),
-        (("evaluate", "s.json", "t.json"), None, ["cannot read s.json"]),
+        (("evaluate", "s.json", "t.json"), None, ["s.json does not exist"]),
         (("evaluate", "s.json", "t.json"), b"[]", ["s.json is not a survey"]),
-        (("survey", "hall.yaml", "--config", "s.json"), None, ["cannot read s.json"]),
+        (("survey", "hall.yaml", "--config", "s.json"), None, ["s.json does not exist"]),
         (("survey", "hall.yaml", "--config", "s.json"), b"{", ["s.json is not TOML"]),
     ],
 )

@@ -11,7 +11,7 @@ import zoo
 from zoo import RESOLUTION, ZOO
 
 import groundplan
-from groundplan import Directions, Lines, ParameterError
+from groundplan import Directions, Lines, MapError, ParameterError
 
 MAP = groundplan.from_array(ZOO["single_room"](), RESOLUTION)
 FOUND = zoo.surveyed("single_room")
@@ -75,3 +75,45 @@ def test_inputs_in_the_wrong_order_are_named() -> None:
 def test_stages_of_another_map_are_refused() -> None:
     other = zoo.surveyed("comb_of_racks")
     assert "not those of this subdivision" in str(refused(groundplan.find_walls, FOUND.subdivision, other.occupancy))
+
+
+@pytest.mark.parametrize("threads", [0, -1, 1.5, True])
+def test_threads_are_a_whole_number_from_1_on(threads: Any) -> None:
+    for stage in (groundplan.survey, groundplan.find_gradients):
+        with pytest.raises(ParameterError, match="threads cannot be") as fault:
+            stage(MAP, threads=threads)
+        assert fault.value.code == "parameter.range"
+
+
+@pytest.mark.parametrize("given", ["/maps/hall.yaml", None, 7, MAP.pixels.shape[0] * 1.0])
+def test_what_is_no_map_is_named(given: Any) -> None:
+    for resolution in (None, 0.05):
+        with pytest.raises(MapError) as fault:
+            groundplan.survey(given, resolution=resolution)
+        assert repr(given) in str(fault.value) and "groundplan.read(path)" in str(fault.value.hint)
+
+
+def test_a_resolution_given_in_python_gets_no_flag_for_a_hint() -> None:
+    with pytest.raises(MapError, match="-1") as fault:
+        groundplan.survey(MAP.pixels, resolution=-1)
+    assert fault.value.hint is None
+
+
+def test_what_is_printed_is_short() -> None:
+    assert repr(MAP) == "Map('', 240 x 160 pixels of 0.05 m)".replace("240 x 160", f"{MAP.width} x {MAP.height}")
+    for thing in (MAP, GRADIENTS, FOUND, FOUND.directions, FOUND.lines, FOUND.subdivision, FOUND.radiograms[0]):
+        assert len(repr(thing)) < 200 and "array" not in repr(thing)
+    assert repr(Directions.of([0.0])) == "Directions(1 angles, 1 weights, 0 histogram, explained 1)"
+
+
+def test_maps_are_equal_when_their_pixels_are() -> None:
+    assert groundplan.from_array(ZOO["single_room"](), RESOLUTION) == MAP
+    assert groundplan.from_array(ZOO["single_room"](), 0.1) != MAP
+    assert groundplan.from_array(ZOO["comb_of_racks"](), RESOLUTION) != MAP
+    assert MAP != 3
+
+
+def test_a_whole_number_is_one_in_the_survey() -> None:
+    found = groundplan.survey(MAP, directions_count=2)
+    assert '"directions.count":2,' in found.to_json()
+    assert groundplan.Survey.from_json(found.to_json()).to_json() == found.to_json()

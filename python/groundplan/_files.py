@@ -58,3 +58,15 @@ def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
 def unwritable(path: Path, fault: OSError) -> FormatError:
     """The one text for a place that cannot be written."""
     return FormatError("file.write", f"cannot write {path}: {fault.strerror or fault}")
+
+
+def unreadable(code: str, path: str | os.PathLike[str], fault: OSError) -> FormatError:
+    """The one text for a file of ours that cannot be read."""
+    if isinstance(fault, FileNotFoundError):
+        return FormatError(code, absent(path))
+    return FormatError(code, f"cannot read {os.fspath(path)}: {fault.strerror or fault}")
+
+
+def absent(path: str | os.PathLike[str]) -> str:
+    """The one text for a file that is not there."""
+    return f"{os.fspath(path)} does not exist"

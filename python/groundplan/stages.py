@@ -45,8 +45,13 @@ class Stage:
 
     __hash__ = None  # type: ignore[assignment]
 
+    def __repr__(self) -> str:
+        parts = {f.name: getattr(self, f.name) for f in fields(self)}  # type: ignore[arg-type]
+        said = (f"{len(v)} {name}" if isinstance(v, np.ndarray) else f"{name} {v:g}" for name, v in parts.items())
+        return f"{type(self).__name__}({', '.join(said)})"
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Gradients(Stage):
     """II-A: edge pixels (occupied, with a 4-neighbour that is not) and the gradient at each.
 
@@ -65,7 +70,7 @@ class Gradients(Stage):
     magnitudes: npt.NDArray[np.uint8]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Directions(Stage):
     """II-A: the dominant directions, strongest first.
 
@@ -96,7 +101,7 @@ class Directions(Stage):
         return cls((own + np.pi / 2) % np.pi - np.pi / 2, np.ones(len(own)), np.zeros(0), 1.0)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Radiogram(Stage):
     """II-B: how much structure lies at each offset across one direction.
 
@@ -121,7 +126,7 @@ class Radiogram(Stage):
         return self.start + self.step * np.arange(len(self.values), dtype=np.float64)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Response(Stage):
     """II-B: responses of a radiogram to Ricker wavelets (Du, Kibbe and Lin 2006).
 
@@ -137,7 +142,7 @@ class Response(Stage):
     rows: Floats
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Lines(Stage):
     """II-B: lines n.p = offset with n = (-sin angle, cos angle), by direction and offset.
 
@@ -176,7 +181,7 @@ class Lines(Stage):
         return cls(families, own, np.ones(len(own)), np.zeros(len(own)), 0.0)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Subdivision(Stage):
     """II-C: what the lines cut the map into. Ragged lists are values with offsets.
 
@@ -218,7 +223,7 @@ class Subdivision(Stage):
         return _core.problems(record(self))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Occupancy(Stage):
     """II-D: O(face), O(edge).
 
@@ -244,7 +249,7 @@ class Occupancy(Stage):
     edges: Floats
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Walls(Stage):
     """II-D: cogency, and the abstraction that the cogent edges make.
 
@@ -271,7 +276,7 @@ class Walls(Stage):
         return len(self.lines)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Adjacency(Stage):
     """II-D, II-E: the dual.
 
@@ -368,15 +373,26 @@ def layout(map: Map) -> _core._Layout:
     return np.ascontiguousarray(rows), bottom_up, map.values, map.states, map.resolution, map.origin
 
 
-def cores() -> int:
-    """Threads to use when none are asked for: the cores that this process may use."""
+def cores(asked: Any = None) -> int:
+    """Threads to use: those asked for, else the cores that this process may use.
+
+    Raises
+    ------
+    ParameterError
+        ``parameter.range`` for less than one.
+    """
+    if asked is not None:
+        if isinstance(asked, bool) or not isinstance(asked, int | np.integer) or asked < 1:
+            hint = "threads takes a whole number from 1 on"
+            raise ParameterError("parameter.range", f"threads cannot be {asked!r}", hint)
+        return int(asked)
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def find_gradients(map: Map, *, threads: int | None = None, **parameters: Any) -> Gradients:
     """II-A: oriented gradients of the edge pixels."""
     grid = layout(needs(Map, "map", map))
-    return made(Gradients, run(_core.find_gradients, grid, named(parameters), threads or cores()))
+    return made(Gradients, run(_core.find_gradients, grid, named(parameters), cores(threads)))
 
 
 def find_directions(map: Map, gradients: Gradients | None = None, **parameters: Any) -> Directions:
@@ -432,7 +448,7 @@ def find_occupancy(
     grid = layout(needs(Map, "map", map))
     given = taken(Directions, "directions", directions), taken(Lines, "lines", lines)
     edges = _gradients(map, gradients, parameters, threads)
-    return made(Occupancy, run(_core.find_occupancy, grid, edges, *given, named(parameters), threads or cores()))
+    return made(Occupancy, run(_core.find_occupancy, grid, edges, *given, named(parameters), cores(threads)))
 
 
 def find_walls(subdivision: Subdivision, occupancy: Occupancy, **parameters: Any) -> Walls:

@@ -13,11 +13,13 @@ import numpy as np
 import numpy.typing as npt
 
 from groundplan import _core
-from groundplan._errors import FormatError, GroundplanError
-from groundplan._files import write_text
+from groundplan._errors import FormatError, MapError
+from groundplan._extras import needed
+from groundplan._files import unreadable, write_text
 from groundplan._format import FORMAT, VERSION, check_format
 from groundplan.maps import Map, MapWarning, from_array
-from groundplan.parameters import named
+from groundplan.maps.map_server import shown
+from groundplan.parameters import named, resolve
 from groundplan.stages import (
     Adjacency,
     Directions,
@@ -63,7 +65,7 @@ class MapInfo:
     origin: tuple[float, float, float]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Survey(Stage):
     """What every stage made of a map; the evidence is kept.
 
@@ -98,6 +100,14 @@ class Survey(Stage):
     warnings: list[MapWarning] = field(default_factory=list)
     source: str | None = None
     reading: dict[str, Any] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        info, cut = self.map, self.subdivision
+        return (
+            f"Survey({info.image!r}, {info.width} x {info.height} pixels of {info.resolution:g} m: "
+            f"{len(self.directions)} directions, {len(self.lines)} lines, {len(cut.areas)} faces, "
+            f"{len(self.walls)} walls, {len(self.labels)} labels, {len(self.warnings)} warnings)"
+        )
 
     def problems(self) -> list[str]:
         """Every broken invariant of the subdivision and its pixels, as sentences; an empty list when all hold."""
@@ -209,7 +219,7 @@ class Survey(Stage):
         try:
             return cls.from_json(Path(path).read_bytes())
         except OSError as fault:
-            raise FormatError("survey.read", f"cannot read {os.fspath(path)}: {fault.strerror}") from fault
+            raise unreadable("survey.read", path, fault) from fault
 
     @classmethod
     def _from_tree(cls, tree: dict[str, Any]) -> Survey:
@@ -358,8 +368,10 @@ def survey(
         An array that is no map.
     """
     if not isinstance(map, Map):
+        if not is_array(map):
+            raise MapError("map.input", f"{shown(map)} is no map", "read it first: groundplan.read(path)")
         if resolution is None:
-            raise GroundplanError("map.resolution", "an array needs its resolution", "survey(array, resolution=0.05)")
+            raise MapError("map.resolution", "an array needs its resolution", "survey(array, resolution=0.05)")
         map = from_array(np.asarray(map), resolution, tuple(origin))
     if lines is not None and directions is None:
         needs(Lines, "lines", lines)
@@ -369,7 +381,7 @@ def survey(
         None if directions is None else taken(Directions, "directions", directions),
         None if lines is None else taken(Lines, "lines", lines),
     )
-    found = run(_core.survey, layout(map), named(parameters), threads or cores(), *given)
+    found = run(_core.survey, layout(map), named(parameters), cores(threads), *given)
     stages = {
         "directions": Directions,
         "lines": Lines,
@@ -380,12 +392,17 @@ def survey(
     }
     return Survey(
         map=MapInfo(map.image, map.width, map.height, map.resolution, map.origin),
-        parameters=_core.resolve(named(parameters)),
+        parameters=resolve(parameters),
         radiograms=[made(Radiogram, arrays) for arrays in found["radiograms"]],
         labels=found["labels"],
         warnings=[*map.warnings, *(MapWarning(code, message) for code, message in found["warnings"])],
         **{name: made(kind, found[name]) for name, kind in stages.items()},
     )
+
+
+def is_array(value: object) -> bool:
+    """Whether NumPy takes it for an array, and not for a single thing."""
+    return hasattr(value, "__array__") or (isinstance(value, Sequence) and not isinstance(value, str | bytes))
 
 
 def rows(**columns: Any) -> list[dict[str, Any]]:
@@ -432,20 +449,3 @@ def checked_reading(reading: dict[str, Any]) -> dict[str, Any]:
 def dump(value: Any) -> str:
     """Compact JSON, without what JSON cannot say."""
     return json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-
-
-def needed(module: str, extra: str) -> Any:
-    """An optional library, imported when used.
-
-    Raises
-    ------
-    GroundplanError
-        ``extra.missing``, with the command that installs it.
-    """
-    import importlib
-
-    try:
-        return importlib.import_module(module)
-    except ImportError as fault:
-        hint = f"pip install 'groundplan[{extra}]'"
-        raise GroundplanError("extra.missing", f"{module} is not installed", hint) from fault

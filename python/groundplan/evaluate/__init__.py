@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from groundplan._errors import FormatError, ParameterError
+from groundplan._files import unreadable
 from groundplan._format import check_format
 from groundplan.evaluate import _scores
 
@@ -98,7 +99,7 @@ def _document(source: Document, what: str, needed: tuple[str, ...]) -> dict[str,
         try:
             content = json.loads(Path(source).read_text(encoding="utf-8"))
         except OSError as fault:
-            raise FormatError("file.read", f"cannot read {name}: {fault.strerror or fault}") from fault
+            raise unreadable("file.read", name, fault) from fault
         except ValueError as fault:
             raise FormatError("file.json", f"{name} is not JSON: {fault}") from fault
     for key in needed:

@@ -81,7 +81,7 @@ def check_resolution(value: object, where: str) -> float:
             "map.resolution",
             f"{where}: resolution {shown(value)} is not a number of metres a pixel between "
             f"{SMALLEST_RESOLUTION:g} and {LARGEST_RESOLUTION:g}",
-            "--resolution sets it, such as --resolution 0.05",
+            "--resolution sets it, such as --resolution 0.05" if where != "resolution" else None,
         )
     return metres
 
