@@ -110,6 +110,7 @@ def agree(survey: Survey, map: Map, path: Path, source: str, quiet: bool) -> Non
     import numpy as np
 
     from groundplan.maps import UNKNOWN
+    from groundplan.maps._warnings import percent
 
     counts = np.zeros(256, np.int64)
     for row in map.pixels:  # no copy of a map that may be larger than memory
@@ -120,6 +121,6 @@ def agree(survey: Survey, map: Map, path: Path, source: str, quiet: bool) -> Non
         total = map.width * map.height
         terminal.say(
             "warning",
-            f"{100 * now / total:.1f} % of {source} is unknown, and {100 * then / total:.1f} % was when it was "
+            f"{percent(now / total)} of {source} is unknown, and {percent(then / total)} was when it was "
             "surveyed: it was read with other flags then",
         )
