@@ -72,6 +72,11 @@ UNREADABLE: dict[str, tuple[str, Callable[[Path], object], list[str]]] = {
     "negative size": ("minus.pgm", lambda path: path.write_bytes(b"P5\n-3 4\n255\n" + bytes(12)), ["minus.pgm"]),
     "directory": ("folder", lambda path: path.mkdir(), ["folder is a directory"]),
     "directory named as a map": ("folder.yaml", lambda path: path.mkdir(), ["folder.yaml is a directory"]),
+    "image that is a directory": (
+        "map.yaml",
+        lambda path: text(path, "image: .\nresolution: 0.05\norigin: [0, 0, 0]\n"),
+        ["map.yaml names the image ., which is a directory"],
+    ),
     "no map": ("notes.txt", lambda path: text(path, "hello"), ["notes.txt is not a map"]),
     "empty": ("empty.pgm", lambda path: path.touch(), ["empty.pgm is empty"]),
     "no YAML": ("broken.yaml", lambda path: text(path, "image: [a\n"), ["broken.yaml is not YAML"]),
@@ -209,15 +214,15 @@ def test_a_full_disk_leaves_nothing(limit: int | None, file: str, tmp_path: Path
 @pytest.mark.parametrize(
     ("command", "content", "values"),
     [
-        (("figures", "s.json"), None, ["cannot read s.json", "No such file"]),
+        (("figures", "s.json"), None, ["s.json does not exist"]),
         (("figures", "s.json"), b"{", ["s.json", "not JSON"]),
         (("figures", "s.json"), b"\xff\xfe\x00", ["s.json", "not JSON"]),
         (("figures", "s.json"), b'{"format": "something"}', ["s.json", "'something'"]),
         (("figures", "s.json"), b'{"format": "groundplan-survey", "version": 7}', ["s.json", "version 7"]),
         (("figures", "s.json"), b'{"format": "groundplan-survey", "version": 1}', ["s.json", "map"]),
-        (("evaluate", "s.json", "t.json"), None, ["cannot read s.json"]),
+        (("evaluate", "s.json", "t.json"), None, ["s.json does not exist"]),
         (("evaluate", "s.json", "t.json"), b"[]", ["s.json is not a survey"]),
-        (("survey", "hall.yaml", "--config", "s.json"), None, ["cannot read s.json"]),
+        (("survey", "hall.yaml", "--config", "s.json"), None, ["s.json does not exist"]),
         (("survey", "hall.yaml", "--config", "s.json"), b"{", ["s.json is not TOML"]),
     ],
 )
@@ -247,3 +252,22 @@ def test_a_survey_with_a_damaged_label_is_refused(label: object, tmp_path: Path,
     ran = call(capsys, "figures", "out/survey.json")
     assert ran.code == 3 and "the survey is not whole" in one_error(ran)
     assert not (tmp_path / "out/figures").exists()
+
+
+def test_a_directory_in_the_survey_s_way_leaves_no_picture(tmp_path: Path, capsys: Capture) -> None:
+    write_map(tmp_path)
+    (tmp_path / "out/survey.json").mkdir(parents=True)
+    before = files(tmp_path)
+    ran = call(capsys, "survey", "hall.yaml", "-o", "out")
+    assert ran.code == 3
+    assert one_error(ran) == f"cannot write {Path('out/survey.json')}: Is a directory"
+    assert files(tmp_path) == before
+
+
+@pytest.mark.parametrize("command", [("survey", "hall.yaml"), ("figures", "out"), ("simulate", "warehouse")])
+def test_an_output_without_a_name_is_wrong_usage(command: tuple[str, ...], tmp_path: Path, capsys: Capture) -> None:
+    write_map(tmp_path)
+    before = files(tmp_path)
+    ran = call(capsys, *command, "-o", "")
+    assert ran.code == 2 and "the directory has no name" in one_error(ran)
+    assert files(tmp_path) == before

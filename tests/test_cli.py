@@ -64,6 +64,9 @@ def test_no_command_shows_the_help_and_is_wrong_usage(capsys: Capture) -> None:
         ("map.yaml", "there is no command 'map.yaml'", "groundplan survey map.yaml"),
         ("survey", "MAP", "groundplan survey --help"),
         ("survey hall.yaml --resoluton 0.1", "there is no flag --resoluton", "did you mean --resolution?"),
+        ("survey hall.yaml --verbose", "there is no flag --verbose", "groundplan survey --help"),
+        ("survey hall.yaml --figure", "there is no flag --figure", "did you mean --figures?"),
+        ("survive", "there is no command 'survive'", "groundplan --help"),
         ("survey hall.yaml --resolution -1", "resolution '-1'", "groundplan survey --help"),
         ("survey hall.yaml another.yaml", "one argument too many: 'another.yaml'", "groundplan survey --help"),
         ("survey hall.yaml --origin 1", "--origin has 1 numbers", "groundplan survey --help"),
@@ -131,8 +134,8 @@ def test_a_written_survey_says_where_its_map_is_and_is_what_python_makes(tmp_pat
     call(capsys, "survey", "hall.yaml", "-o", "out")
     text = (tmp_path / "out/survey.json").read_text()
     read = groundplan.Survey.from_json(text)
-    assert read.source == "hall.yaml"
-    assert json.loads(text)["source"] == {"file": "hall.yaml"}
+    assert (read.source, read.reading) == ("../hall.yaml", {})
+    assert json.loads(text)["source"] == {"file": "../hall.yaml", "reading": {}}
     assert read.to_json() == text
     own = groundplan.survey(groundplan.read(yaml))
     assert own.source is None and "source" not in own.to_dict()
@@ -171,6 +174,45 @@ def test_figures_are_drawn_on_demand_and_again_from_the_saved_survey(
         assert ran.code == 0 and ran.err == ""
         assert {Path(line).name for line in ran.out.splitlines()} == {n for n in drawn if n.endswith("svg")}
         assert all(Path(line).is_file() for line in ran.out.splitlines())
+
+
+def test_a_survey_is_the_same_however_its_map_was_typed(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_map(tmp_path)
+    (tmp_path / "below").mkdir()
+    typed = ["hall.yaml", "./below/../hall.yaml", str(tmp_path / "hall.yaml")]
+    assert {json.loads(call(capsys, "survey", map, "--json").out)["source"]["file"] for map in typed} == {"hall.yaml"}
+    made = set()
+    for map in typed:
+        call(capsys, "survey", map, "-q", "-o", "below/out")
+        made.add((tmp_path / "below/out/survey.json").read_text())
+    monkeypatch.chdir(tmp_path / "below")
+    call(capsys, "survey", "../hall.yaml", "-q", "-o", "out")
+    made.add((tmp_path / "below/out/survey.json").read_text())
+    assert len(made) == 1 and str(tmp_path) not in next(iter(made))
+
+
+def test_figures_read_the_map_as_the_survey_did(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_map(tmp_path)
+    flags = ("--unknown", "205", "--dialect", "ros1", "--resolution", "0.1", "--origin", "1", "2", "--no-negate")
+    call(capsys, "survey", "hall.yaml", "-o", "out", *flags)
+    text = (tmp_path / "out/survey.json").read_text()
+    given = {"dialect": "ros1", "unknown": [205], "negate": False, "resolution": 0.1, "origin": [1.0, 2.0]}
+    assert json.loads(text)["source"] == {"file": "../hall.yaml", "reading": given}
+    assert groundplan.Survey.from_json(text).to_json() == text
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    for survey in ("../out/survey.json", "../out"):
+        ran = call(capsys, "figures", survey, "--format", "svg")
+        assert (ran.code, ran.err) == (0, "")
+        assert (tmp_path / "out/figures").is_dir()
+    assert (
+        "it was read with other flags then"
+        in call(capsys, "figures", "../out", "--unknown", "254", "--format", "svg").err
+    )
 
 
 def test_figures_refuse_a_map_that_is_gone_or_another(tmp_path: Path, capsys: Capture) -> None:

@@ -19,6 +19,8 @@ from groundplan.simulate import WarehouseOptions, warehouse
 
 SCRIPT = Path(__file__).parents[2] / "shared" / "tools" / "evaluate_survey.py"
 
+FORMAT = {"format": "groundplan-survey", "version": 1}
+
 PERFECT = {
     "direction_error_deg": 0.0,
     "direction_extra": 0,
@@ -67,7 +69,7 @@ def survey_of(true: dict[str, Any], random: np.random.Generator | None = None) -
             kind = junction["type"] if kept() or random is None else str(random.choice(["L", "T", "X", "Y", "end"]))
             at = [junction["at"][0] + off(0.8), junction["at"][1] + off(0.8)]
             labels.append({"kind": "junction", "type": kind, "at": at})
-    return {"directions": directions, "lines": lines, "labels": labels}
+    return {**FORMAT, "directions": directions, "lines": lines, "labels": labels}
 
 
 def test_a_perfect_survey_scores_full_marks() -> None:
@@ -78,7 +80,7 @@ def test_a_perfect_survey_scores_full_marks() -> None:
 
 
 def test_an_empty_survey_scores_nothing() -> None:
-    scores = score({"directions": [], "lines": [], "labels": []}, truth())
+    scores = score({**FORMAT, "directions": [], "lines": [], "labels": []}, truth())
     assert scores["direction_error_deg"] == 180.0
     assert scores["line_recall"] == 0.0 and scores["line_error_m"] is None
     assert scores["junction_typed_f1"] == 0.0
@@ -118,7 +120,7 @@ def test_scores_agree_with_the_published_script() -> None:
     spec.loader.exec_module(published)
     random = np.random.default_rng(5)
     surveys = [survey_of(truth()), *(survey_of(truth(), random) for _ in range(12))]
-    surveys.append({"directions": [], "lines": [], "labels": []})
+    surveys.append({**FORMAT, "directions": [], "lines": [], "labels": []})
     for survey in surveys:
         expected = published.score(survey, truth())
         mine = score(survey, truth())
@@ -140,7 +142,7 @@ def test_files_are_read_and_what_is_wrong_with_them_is_said(tmp_path: Path) -> N
             score(source, right)
         assert caught.value.code == code
     with pytest.raises(FormatError, match="offset") as caught:
-        score({"directions": [{"angle": 0.0}], "lines": [{"direction": 0}], "labels": []}, right)
+        score({**FORMAT, "directions": [{"angle": 0.0}], "lines": [{"direction": 0}], "labels": []}, right)
     assert caught.value.code == "score.format"
 
 
@@ -169,3 +171,21 @@ def test_the_warehouse_suite_has_forty_valid_cases_in_two_halves() -> None:
 def test_an_unknown_suite_is_named() -> None:
     with pytest.raises(ParameterError, match="castles"):
         suite("castles")
+
+
+@pytest.mark.parametrize(
+    ("change", "code", "said"),
+    [
+        ({"format": "another"}, "survey.format", "'another'"),
+        ({"format": None}, "survey.format", "None"),
+        ({"version": 2}, "survey.version", "version 2"),
+    ],
+)
+def test_a_survey_of_another_format_is_refused_by_name(
+    change: dict[str, Any], code: str, said: str, tmp_path: Path
+) -> None:
+    survey = tmp_path / "s.json"
+    survey.write_text(json.dumps(survey_of(truth()) | change))
+    with pytest.raises(FormatError, match=f"s.json: .*{said}") as caught:
+        score(survey, truth())
+    assert caught.value.code == code

@@ -104,8 +104,6 @@ def test_names_hold_when_the_map_is_made_again(seed: int) -> None:
     options: dict[str, Any] = {"seed": seed, "width": 32.0, "depth": 24.0, "yaw": 7.0}
     before = groundplan.survey(simulate.warehouse(**options).map)
     again = groundplan.survey(simulate.warehouse(**(options | {"yaw": 7.5, "noise": 0.02})).map)
-    places = [
-        {c["name"]: np.mean(c["axis"], axis=0) for c in survey.of_kind("corridor")} for survey in (before, again)
-    ]
+    places = [{c["name"]: np.mean(c["axis"], axis=0) for c in survey.of_kind("corridor")} for survey in (before, again)]
     kept = [name for name, at in places[0].items() if name in places[1] and np.hypot(*(at - places[1][name])) < 1.0]
     assert len(kept) >= 0.95 * len(places[0])

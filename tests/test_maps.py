@@ -812,3 +812,21 @@ def test_maps_without_a_trap_are_read_as_their_yaml_says(
     got = read(collection / f"{name}.yaml")
     assert got.warnings == ()
     assert shares(got) == pytest.approx(percent, abs=0.6)
+
+
+def test_an_occupied_outside_is_not_said_to_need_no_flag_where_the_walls_are_darker() -> None:
+    picture = np.full((100, 100), 60, np.uint8)
+    picture[30:70, 30:70] = 254
+    picture[30:70, 30:32] = 0
+    said = {warning.code: warning.message for warning in from_array(picture, 0.05).warnings}
+    assert "the walls are darker" in said["unknown-as-occupied"]
+    assert "needs no flag" not in said["outside-occupied"]
+    assert "84.8 % of the map" in said["outside-occupied"]
+    picture[picture == 60] = 0
+    assert "needs no flag" in {w.code: w.message for w in from_array(picture, 0.05).warnings}["outside-occupied"]
+
+
+def test_a_share_that_rounds_to_nothing_is_not_said_to_be_nothing() -> None:
+    from groundplan.maps._warnings import percent
+
+    assert [percent(share) for share in (0.0, 0.0001, 0.001, 0.5)] == ["0.0 %", "less than 0.1 %", "0.1 %", "50.0 %"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import tempfile
 from collections.abc import Iterator
@@ -23,6 +24,8 @@ def whole(path: str | os.PathLike[str]) -> Iterator[Path]:
     target = Path(path)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
+        if target.is_dir():  # told before the work, not after it
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
         handle, name = tempfile.mkstemp(prefix=f".{target.stem}.", suffix=target.suffix, dir=target.parent)
         os.close(handle)
     except OSError as fault:
@@ -55,3 +58,15 @@ def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
 def unwritable(path: Path, fault: OSError) -> FormatError:
     """The one text for a place that cannot be written."""
     return FormatError("file.write", f"cannot write {path}: {fault.strerror or fault}")
+
+
+def unreadable(code: str, path: str | os.PathLike[str], fault: OSError) -> FormatError:
+    """The one text for a file of ours that cannot be read."""
+    if isinstance(fault, FileNotFoundError):
+        return FormatError(code, absent(path))
+    return FormatError(code, f"cannot read {os.fspath(path)}: {fault.strerror or fault}")
+
+
+def absent(path: str | os.PathLike[str]) -> str:
+    """The one text for a file that is not there."""
+    return f"{os.fspath(path)} does not exist"

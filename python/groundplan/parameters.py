@@ -9,6 +9,7 @@ from typing import Any
 
 from groundplan import _core
 from groundplan._errors import FormatError, ParameterError
+from groundplan._files import unreadable
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,9 @@ def resolve(parameters: dict[str, Any]) -> dict[str, Any]:
     ParameterError
         ``parameter.unknown`` or ``parameter.range``.
     """
-    return _core.resolve(named(parameters))
+    values = _core.resolve(named(parameters))
+    whole = (row["name"] for row in _core.table() if row["range"].startswith("a whole number"))
+    return values | {name: int(values[name]) for name in whole if values[name] is not None}
 
 
 def named(parameters: dict[str, Any]) -> dict[str, Any]:
@@ -76,7 +79,7 @@ def read_toml(path: str | os.PathLike[str]) -> dict[str, Any]:
         with open(path, "rb") as file:
             tree = tomllib.load(file)
     except OSError as fault:
-        raise FormatError("settings.read", f"cannot read {os.fspath(path)}: {fault.strerror}") from fault
+        raise unreadable("settings.read", path, fault) from fault
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
         raise FormatError("settings.toml", f"{os.fspath(path)} is not TOML: {fault}") from fault
     flat: dict[str, Any] = {}

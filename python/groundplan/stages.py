@@ -4,7 +4,8 @@
         -> find_walls -> find_adjacency -> find_labels
 
 ``groundplan.survey()`` is these in a row. A researcher replaces one of them and hands its
-result to ``groundplan.survey(map, directions=..., lines=...)``. Lengths are metres, angles radians, points in the map
+result to ``groundplan.survey(map, directions=..., lines=...)``. What does not fit a stage is a ParameterError,
+``stage.input``. Lengths are metres, angles radians, points in the map
 frame; an id that is none (the line of a border edge, the face outside) is `NONE`. Section numbers are those of
 Gholami Shahbandi, Åstrand and Philippsen (ICARCV 2014).
 """
@@ -12,6 +13,7 @@ Gholami Shahbandi, Åstrand and Philippsen (ICARCV 2014).
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
@@ -19,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from groundplan import _core
+from groundplan._errors import ParameterError
 from groundplan.maps import Map
 from groundplan.parameters import named
 
@@ -42,8 +45,13 @@ class Stage:
 
     __hash__ = None  # type: ignore[assignment]
 
+    def __repr__(self) -> str:
+        parts = {f.name: getattr(self, f.name) for f in fields(self)}  # type: ignore[arg-type]
+        said = (f"{len(v)} {name}" if isinstance(v, np.ndarray) else f"{name} {v:g}" for name, v in parts.items())
+        return f"{type(self).__name__}({', '.join(said)})"
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Gradients(Stage):
     """II-A: edge pixels (occupied, with a 4-neighbour that is not) and the gradient at each.
 
@@ -62,7 +70,7 @@ class Gradients(Stage):
     magnitudes: npt.NDArray[np.uint8]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Directions(Stage):
     """II-A: the dominant directions, strongest first.
 
@@ -93,7 +101,7 @@ class Directions(Stage):
         return cls((own + np.pi / 2) % np.pi - np.pi / 2, np.ones(len(own)), np.zeros(0), 1.0)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Radiogram(Stage):
     """II-B: how much structure lies at each offset across one direction.
 
@@ -118,7 +126,7 @@ class Radiogram(Stage):
         return self.start + self.step * np.arange(len(self.values), dtype=np.float64)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Response(Stage):
     """II-B: responses of a radiogram to Ricker wavelets (Du, Kibbe and Lin 2006).
 
@@ -134,7 +142,7 @@ class Response(Stage):
     rows: Floats
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Lines(Stage):
     """II-B: lines n.p = offset with n = (-sin angle, cos angle), by direction and offset.
 
@@ -173,7 +181,7 @@ class Lines(Stage):
         return cls(families, own, np.ones(len(own)), np.zeros(len(own)), 0.0)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Subdivision(Stage):
     """II-C: what the lines cut the map into. Ragged lists are values with offsets.
 
@@ -215,7 +223,7 @@ class Subdivision(Stage):
         return _core.problems(record(self))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Occupancy(Stage):
     """II-D: O(face), O(edge).
 
@@ -241,7 +249,7 @@ class Occupancy(Stage):
     edges: Floats
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Walls(Stage):
     """II-D: cogency, and the abstraction that the cogent edges make.
 
@@ -268,7 +276,7 @@ class Walls(Stage):
         return len(self.lines)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Adjacency(Stage):
     """II-D, II-E: the dual.
 
@@ -290,6 +298,8 @@ class Adjacency(Stage):
         return len(self.edges)
 
 
+R = TypeVar("R")
+T = TypeVar("T")
 S = TypeVar("S", bound=Stage)
 
 
@@ -303,6 +313,58 @@ def record(stage: Stage) -> dict[str, Any]:
     return {f.name: getattr(stage, f.name) for f in fields(stage)}  # type: ignore[arg-type]
 
 
+#: What makes a stage's input of one's own.
+_MADE_BY = {
+    "Map": "groundplan.read(path) reads one, groundplan.from_array(pixels, resolution) takes an array",
+    "Directions": "groundplan.Directions.of(angles) makes them of angles in radians",
+    "Lines": "groundplan.Lines.of(directions, offsets) makes them of indices and metres",
+}
+
+_SINGULAR = {"vertices": "vertex", "histogram": "value of the histogram"}
+
+
+def needs(kind: type[T], name: str, value: object) -> T:
+    """A stage's input, held to its type.
+
+    Raises
+    ------
+    ParameterError
+        ``stage.input``.
+    """
+    if isinstance(value, kind):
+        return value
+    said = f"{name} has to be {a(kind.__name__)} and is {a(type(value).__name__)}"
+    raise ParameterError("stage.input", said, _MADE_BY.get(kind.__name__))
+
+
+def a(noun: str) -> str:
+    """A noun with its article; a plural goes without."""
+    return noun if noun[0].isupper() and noun.endswith("s") else f"{'an' if noun[0] in 'aeiouAEIO' else 'a'} {noun}"
+
+
+def taken(kind: type[Stage], name: str, value: object) -> dict[str, Any]:
+    """A stage's input as the core takes it, finite and of its type; ``stage.input`` where it is not."""
+    arrays = record(needs(kind, name, value))
+    for part, numbers in arrays.items():
+        if np.asarray(numbers).dtype.kind == "f" and not np.isfinite(numbers).all():
+            raise ParameterError(
+                "stage.input", f"{a(_SINGULAR.get(part, part.removesuffix('s')))} of the {name} is not finite"
+            )
+    return arrays
+
+
+def run(stage: Callable[..., R], *inputs: Any) -> R:
+    """Call the core; inputs that do not fit one another are told as ``stage.input``."""
+    try:
+        return stage(*inputs)
+    except ParameterError:
+        raise
+    except (ValueError, OverflowError) as fault:
+        raise ParameterError("stage.input", str(fault)) from fault
+    except TypeError as fault:
+        raise ParameterError("stage.input", f"an array is not of the type that its stage says: {fault}") from fault
+
+
 def layout(map: Map) -> _core._Layout:
     """A map as the core takes it, without copying its pixels where their rows follow one another."""
     pixels = map.pixels
@@ -311,14 +373,26 @@ def layout(map: Map) -> _core._Layout:
     return np.ascontiguousarray(rows), bottom_up, map.values, map.states, map.resolution, map.origin
 
 
-def cores() -> int:
-    """Threads to use when none are asked for: the cores that this process may use."""
+def cores(asked: Any = None) -> int:
+    """Threads to use: those asked for, else the cores that this process may use.
+
+    Raises
+    ------
+    ParameterError
+        ``parameter.range`` for less than one.
+    """
+    if asked is not None:
+        if isinstance(asked, bool) or not isinstance(asked, int | np.integer) or asked < 1:
+            hint = "threads takes a whole number from 1 on"
+            raise ParameterError("parameter.range", f"threads cannot be {asked!r}", hint)
+        return int(asked)
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def find_gradients(map: Map, *, threads: int | None = None, **parameters: Any) -> Gradients:
     """II-A: oriented gradients of the edge pixels."""
-    return made(Gradients, _core.find_gradients(layout(map), named(parameters), threads or cores()))
+    grid = layout(needs(Map, "map", map))
+    return made(Gradients, run(_core.find_gradients, grid, named(parameters), cores(threads)))
 
 
 def find_directions(map: Map, gradients: Gradients | None = None, **parameters: Any) -> Directions:
@@ -326,32 +400,39 @@ def find_directions(map: Map, gradients: Gradients | None = None, **parameters: 
 
     Their number and angles are found unless ``directions_count`` or ``directions_angles_deg`` are given.
     """
-    gradients = gradients or find_gradients(map, **parameters)
-    return made(Directions, _core.find_directions(layout(map), record(gradients), named(parameters)))
+    grid, edges = layout(needs(Map, "map", map)), _gradients(map, gradients, parameters)
+    return made(Directions, run(_core.find_directions, grid, edges, named(parameters)))
 
 
 def find_radiograms(
     map: Map, directions: Directions, gradients: Gradients | None = None, **parameters: Any
 ) -> list[Radiogram]:
     """II-B: the radiogram of each direction."""
-    gradients = gradients or find_gradients(map, **parameters)
-    found = _core.find_radiograms(layout(map), record(gradients), record(directions), named(parameters))
+    grid, along = layout(needs(Map, "map", map)), taken(Directions, "directions", directions)
+    edges = _gradients(map, gradients, parameters)
+    found = run(_core.find_radiograms, grid, edges, along, named(parameters))
     return [made(Radiogram, arrays) for arrays in found]
 
 
 def find_response(radiogram: Radiogram, **parameters: Any) -> Response:
     """II-B: the wavelet response that a radiogram's peaks are read from."""
-    return made(Response, _core.find_response(record(radiogram), named(parameters)))
+    given = taken(Radiogram, "radiogram", radiogram)
+    return made(Response, run(_core.find_response, given, named(parameters)))
 
 
 def find_lines(radiograms: list[Radiogram], **parameters: Any) -> Lines:
     """II-B: the radiograms' peaks as lines."""
-    return made(Lines, _core.find_lines([record(r) for r in radiograms], named(parameters)))
+    if not isinstance(radiograms, list | tuple):
+        raise ParameterError("stage.input", f"radiograms has to be a list and is {a(type(radiograms).__name__)}")
+    given = [taken(Radiogram, f"radiograms[{k}]", radiogram) for k, radiogram in enumerate(radiograms)]
+    return made(Lines, run(_core.find_lines, given, named(parameters)))
 
 
 def subdivide(map: Map, directions: Directions, lines: Lines) -> Subdivision:
     """II-C: vertices, edges and faces of all lines taken across the map."""
-    return made(Subdivision, _core.subdivide(layout(map), record(directions), record(lines)))
+    grid = layout(needs(Map, "map", map))
+    given = taken(Directions, "directions", directions), taken(Lines, "lines", lines)
+    return made(Subdivision, run(_core.subdivide, grid, *given))
 
 
 def find_occupancy(
@@ -364,19 +445,22 @@ def find_occupancy(
     **parameters: Any,
 ) -> Occupancy:
     """II-D: O(face) and O(edge) of the subdivision that the lines make."""
-    gradients = gradients or find_gradients(map, threads=threads, **parameters)
-    stages = record(gradients), record(directions), record(lines)
-    return made(Occupancy, _core.find_occupancy(layout(map), *stages, named(parameters), threads or cores()))
+    grid = layout(needs(Map, "map", map))
+    given = taken(Directions, "directions", directions), taken(Lines, "lines", lines)
+    edges = _gradients(map, gradients, parameters, threads)
+    return made(Occupancy, run(_core.find_occupancy, grid, edges, *given, named(parameters), cores(threads)))
 
 
 def find_walls(subdivision: Subdivision, occupancy: Occupancy, **parameters: Any) -> Walls:
     """II-D: C(edge) = disparity > t1 or O(edge) > t2, and the walls."""
-    return made(Walls, _core.find_walls(record(subdivision), record(occupancy), named(parameters)))
+    given = taken(Subdivision, "subdivision", subdivision), taken(Occupancy, "occupancy", occupancy)
+    return made(Walls, run(_core.find_walls, *given, named(parameters)))
 
 
 def find_adjacency(subdivision: Subdivision, walls: Walls) -> Adjacency:
     """II-D, II-E: a node for each face, a link for each edge between two faces."""
-    return made(Adjacency, _core.find_adjacency(record(subdivision), record(walls)))
+    given = taken(Subdivision, "subdivision", subdivision), taken(Walls, "walls", walls)
+    return made(Adjacency, run(_core.find_adjacency, *given))
 
 
 def find_labels(
@@ -391,6 +475,19 @@ def find_labels(
     **parameters: Any,
 ) -> list[dict[str, Any]]:
     """II-E: what is what, as the survey's JSON has it: corridors, junctions, racks."""
-    gradients = gradients or find_gradients(map, threads=threads, **parameters)
-    stages = record(gradients), record(directions), record(lines), record(occupancy), record(walls)
-    return _core.find_labels(layout(map), *stages, named(parameters), threads or cores())
+    grid = layout(needs(Map, "map", map))
+    cut = taken(Directions, "directions", directions), taken(Lines, "lines", lines)
+    measured = taken(Occupancy, "occupancy", occupancy), taken(Walls, "walls", walls)
+    edges = _gradients(map, gradients, parameters, threads)
+    found: list[dict[str, Any]] = run(
+        _core.find_labels, grid, edges, *cut, *measured, named(parameters), cores(threads)
+    )
+    return found
+
+
+def _gradients(
+    map: Map, given: Gradients | None, parameters: dict[str, Any], threads: int | None = None
+) -> dict[str, Any]:
+    """The gradients that were given, or those of the map."""
+    found = find_gradients(map, threads=threads, **parameters) if given is None else given
+    return taken(Gradients, "gradients", found)

@@ -13,10 +13,13 @@ import numpy as np
 import numpy.typing as npt
 
 from groundplan import _core
-from groundplan._errors import FormatError, GroundplanError
-from groundplan._files import write_text
+from groundplan._errors import FormatError, MapError
+from groundplan._extras import needed
+from groundplan._files import unreadable, write_text
+from groundplan._format import FORMAT, VERSION, check_format
 from groundplan.maps import Map, MapWarning, from_array
-from groundplan.parameters import named
+from groundplan.maps.map_server import shown
+from groundplan.parameters import named, resolve
 from groundplan.stages import (
     Adjacency,
     Directions,
@@ -27,19 +30,25 @@ from groundplan.stages import (
     Subdivision,
     Walls,
     cores,
+    find_directions,
+    find_gradients,
     layout,
     made,
-    record,
+    needs,
+    run,
+    taken,
 )
 
 if TYPE_CHECKING:
     import networkx
 
-FORMAT, VERSION = "groundplan-survey", 1
 STATES = ("free", "occupied", "unknown")
 
 #: What a label of a kind must have besides its kind.
 NEEDED = {"corridor": ("polygon", "axis", "width"), "junction": ("type", "at")}
+
+#: What can be given for reading a map.
+READING = ("dialect", "unknown", "negate", "mode", "occupied_thresh", "free_thresh", "resolution", "origin")
 
 #: A label: ``kind`` and the keys that the survey's format gives that kind. Plain values, as in the JSON.
 Label = dict[str, Any]
@@ -56,7 +65,7 @@ class MapInfo:
     origin: tuple[float, float, float]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Survey(Stage):
     """What every stage made of a map; the evidence is kept.
 
@@ -72,7 +81,10 @@ class Survey(Stage):
     warnings : list of MapWarning
         Partial trouble, the map's own first.
     source : str or None
-        The map's file as it was named on the command line, so that figures can be drawn over it later.
+        The map's file, relative to the directory that the survey is written to, so that figures can be drawn over it
+        later; known where the command line wrote the survey.
+    reading : dict
+        What was given for reading the map, by the names of `groundplan.read`; empty where the file said all.
     """
 
     map: MapInfo
@@ -87,6 +99,15 @@ class Survey(Stage):
     labels: list[Label]
     warnings: list[MapWarning] = field(default_factory=list)
     source: str | None = None
+    reading: dict[str, Any] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        info, cut = self.map, self.subdivision
+        return (
+            f"Survey({info.image!r}, {info.width} x {info.height} pixels of {info.resolution:g} m: "
+            f"{len(self.directions)} directions, {len(self.lines)} lines, {len(cut.areas)} faces, "
+            f"{len(self.walls)} walls, {len(self.labels)} labels, {len(self.warnings)} warnings)"
+        )
 
     def problems(self) -> list[str]:
         """Every broken invariant of the subdivision and its pixels, as sentences; an empty list when all hold."""
@@ -108,7 +129,7 @@ class Survey(Stage):
         lines = [None if line < 0 else line for line in cut.edge_lines.tolist()]
         sides = [[None if f < 0 else f for f in pair] for pair in cut.edge_faces.tolist()]
         kinds = ["freestanding" if free else "separating" for free in self.walls.freestanding.tolist()]
-        source = {} if self.source is None else {"source": {"file": self.source}}
+        source = {} if self.source is None else {"source": {"file": self.source, "reading": self.reading}}
         return {
             "format": FORMAT,
             "version": VERSION,
@@ -180,13 +201,7 @@ class Survey(Stage):
             tree = json.loads(text)
         except (ValueError, RecursionError) as fault:
             raise FormatError("survey.json", f"the survey is not JSON: {fault}") from fault
-        if not isinstance(tree, dict) or tree.get("format") != FORMAT:
-            name = tree.get("format") if isinstance(tree, dict) else None
-            raise FormatError("survey.format", f"the format is {name!r} and not {FORMAT!r}")
-        if tree.get("version") != VERSION:
-            raise FormatError(
-                "survey.version", f"version {tree.get('version')!r} of the format is not known, {VERSION} is"
-            )
+        check_format(tree if isinstance(tree, dict) else {})
         try:
             return cls._from_tree(tree)
         except (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError) as fault:
@@ -204,10 +219,11 @@ class Survey(Stage):
         try:
             return cls.from_json(Path(path).read_bytes())
         except OSError as fault:
-            raise FormatError("survey.read", f"cannot read {os.fspath(path)}: {fault.strerror}") from fault
+            raise unreadable("survey.read", path, fault) from fault
 
     @classmethod
     def _from_tree(cls, tree: dict[str, Any]) -> Survey:
+        source = tree.get("source")
         frame, evidence, faces, edges = tree["map"], tree["evidence"], tree["faces"], tree["edges"]
         x, y, yaw = (float(value) for value in frame["origin"])
         width, height = int(frame["width"]), int(frame["height"])
@@ -269,7 +285,8 @@ class Survey(Stage):
             ),
             labels=[checked(label) for label in tree["labels"]],
             warnings=[MapWarning(w["code"], w["message"]) for w in tree["warnings"]],
-            source=str(tree["source"]["file"]) if "source" in tree else None,
+            source=None if source is None else str(source["file"]),
+            reading={} if source is None else checked_reading(source.get("reading", {})),
         )
 
     def to_networkx(self) -> networkx.Graph[int]:
@@ -337,7 +354,7 @@ def survey(
     resolution, origin
         Of an array: metres per pixel, and the pose of its lower left corner (m, m, rad).
     directions, lines
-        Results of your own in place of these stages'.
+        Results of your own in place of these stages'. Lines without directions are of those that are found.
     threads
         At most so many; all cores by default. Any number gives the same survey.
     **parameters
@@ -346,16 +363,25 @@ def survey(
     Raises
     ------
     ParameterError
-        A parameter that is not known or out of its range.
+        A parameter that is not known or out of its range; ``stage.input`` for directions or lines that do not fit.
     MapError
         An array that is no map.
     """
     if not isinstance(map, Map):
+        if not is_array(map):
+            raise MapError("map.input", f"{shown(map)} is no map", "read it first: groundplan.read(path)")
         if resolution is None:
-            raise GroundplanError("map.resolution", "an array needs its resolution", "survey(array, resolution=0.05)")
+            raise MapError("map.resolution", "an array needs its resolution", "survey(array, resolution=0.05)")
         map = from_array(np.asarray(map), resolution, tuple(origin))
-    given = [record(stage) if stage is not None else None for stage in (directions, lines)]
-    found = _core.survey(layout(map), named(parameters), threads or cores(), *given)
+    if lines is not None and directions is None:
+        needs(Lines, "lines", lines)
+        gradients = find_gradients(map, threads=threads, **parameters)
+        directions = find_directions(map, gradients, **parameters)
+    given = (
+        None if directions is None else taken(Directions, "directions", directions),
+        None if lines is None else taken(Lines, "lines", lines),
+    )
+    found = run(_core.survey, layout(map), named(parameters), cores(threads), *given)
     stages = {
         "directions": Directions,
         "lines": Lines,
@@ -366,12 +392,17 @@ def survey(
     }
     return Survey(
         map=MapInfo(map.image, map.width, map.height, map.resolution, map.origin),
-        parameters=_core.resolve(named(parameters)),
+        parameters=resolve(parameters),
         radiograms=[made(Radiogram, arrays) for arrays in found["radiograms"]],
         labels=found["labels"],
         warnings=[*map.warnings, *(MapWarning(code, message) for code, message in found["warnings"])],
         **{name: made(kind, found[name]) for name, kind in stages.items()},
     )
+
+
+def is_array(value: object) -> bool:
+    """Whether NumPy takes it for an array, and not for a single thing."""
+    return hasattr(value, "__array__") or (isinstance(value, Sequence) and not isinstance(value, str | bytes))
 
 
 def rows(**columns: Any) -> list[dict[str, Any]]:
@@ -407,23 +438,14 @@ def checked(label: Any) -> Label:
     return dict(label)
 
 
+def checked_reading(reading: dict[str, Any]) -> dict[str, Any]:
+    """What a file says of how the map was read, held to the names that there are."""
+    strange = [name for name in reading if name not in READING]
+    if strange:
+        raise ValueError(f"there is no {strange[0]!r} in reading a map")
+    return dict(reading)
+
+
 def dump(value: Any) -> str:
     """Compact JSON, without what JSON cannot say."""
     return json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-
-
-def needed(module: str, extra: str) -> Any:
-    """An optional library, imported when used.
-
-    Raises
-    ------
-    GroundplanError
-        ``extra.missing``, with the command that installs it.
-    """
-    import importlib
-
-    try:
-        return importlib.import_module(module)
-    except ImportError as fault:
-        hint = f"pip install 'groundplan[{extra}]'"
-        raise GroundplanError("extra.missing", f"{module} is not installed", hint) from fault

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import difflib
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 from groundplan._cli import terminal
 from groundplan._errors import MapError
-
-if TYPE_CHECKING:
-    from groundplan.maps import Map
 
 COMMANDS = {
     "survey": "find the directions, walls, corridors and junctions of a map",
@@ -66,8 +62,8 @@ class Parser(argparse.ArgumentParser):
         self.exit(2)
 
     def _refuse_command(self, word: str) -> NoReturn:
-        near = difflib.get_close_matches(word, COMMANDS, 1)
-        hint = f"did you mean {self.prog} {near[0]}?" if near else None
+        near = nearest(word, COMMANDS)
+        hint = f"did you mean {self.prog} {near}?" if near else None
         if not near and Path(word).suffix:
             hint = f"{self.prog} survey {word}"
         self.error(f"there is no command {word!r}", hint)
@@ -76,8 +72,27 @@ class Parser(argparse.ArgumentParser):
         if not word.startswith("-"):
             self.error(f"one argument too many: {word!r}")
         flag = word.partition("=")[0]
-        near = difflib.get_close_matches(flag, self._option_string_actions, 1)
-        self.error(f"there is no flag {flag}", f"did you mean {near[0]}?" if near else None)
+        near = nearest(flag.lstrip("-"), [name[2:] for name in self._option_string_actions if name.startswith("--")])
+        self.error(f"there is no flag {flag}", f"did you mean --{near}?" if near else None)
+
+
+def nearest(word: str, names: Iterable[str]) -> str | None:
+    """The name that `word` was most likely meant to be: at most a third of its letters are wrong."""
+    apart = {name: _distance(word, name) for name in names}
+    best = min(apart, key=lambda name: apart[name], default=None)
+    return best if best is not None and 3 * apart[best] <= len(best) else None
+
+
+def _distance(a: str, b: str) -> int:
+    """Letters to change, put in, take out or swap with the next to make one word the other."""
+    before, row = [0] * (len(b) + 1), list(range(len(b) + 1))
+    for i, letter in enumerate(a, 1):
+        earlier, before, row = before, row, [i] * (len(b) + 1)
+        for j, other in enumerate(b, 1):
+            row[j] = min(before[j] + 1, row[j - 1] + 1, before[j - 1] + (letter != other))
+            if i > 1 and j > 1 and (letter, a[i - 2]) == (b[j - 2], other):
+                row[j] = min(row[j], earlier[j - 2] + 1)
+    return row[-1]
 
 
 def parser() -> Parser:
@@ -112,6 +127,13 @@ class _Version(argparse.Action):
 
         terminal.put(f"groundplan {groundplan.__version__}\n")
         parser.exit()
+
+
+def place(text: str) -> Path:
+    """A directory to write to; what a shell variable without a value leaves is none."""
+    if not text:
+        raise argparse.ArgumentTypeError("the directory has no name")
+    return Path(text)
 
 
 def number(text: str) -> float:
@@ -208,17 +230,8 @@ def add_reading(own: argparse.ArgumentParser, *, frame: bool) -> None:
     group.add_argument("--free-thresh", type=share, metavar="P", help="free up to this darkness, 0 to 1")
 
 
-def read_map(path: str, arguments: argparse.Namespace, **frame: Any) -> Map:
-    """The map, read as the flags of `add_reading` say."""
-    from groundplan.maps import read
+def reading(arguments: argparse.Namespace) -> dict[str, Any]:
+    """What the flags of `add_reading` say, as `groundplan.read` takes it: only those that were given."""
+    from groundplan.survey import READING
 
-    return read(
-        path,
-        dialect=arguments.dialect or "nav2",
-        unknown=arguments.unknown,
-        negate=arguments.negate,
-        mode=arguments.mode,
-        occupied_thresh=arguments.occupied_thresh,
-        free_thresh=arguments.free_thresh,
-        **frame,
-    )
+    return {name: value for name in READING if (value := getattr(arguments, name, None)) is not None}

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from groundplan._cli import terminal
-from groundplan._cli.arguments import add_reading, read_map
+from groundplan._cli.arguments import add_reading, place, reading
 from groundplan._errors import FormatError
 
 if TYPE_CHECKING:
@@ -20,11 +21,14 @@ FORMATS = ("png", "svg", "pdf")
 def fill(own: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     own.usage = "groundplan figures SURVEY [--map MAP] [-o DIR] [--format png,svg] [flags]"
-    own.epilog = "Give the flags for reading the map that the survey was made with. The names of the files are printed."
-    own.add_argument("survey", metavar="SURVEY", type=Path, help="a survey.json")
+    own.epilog = (
+        "The map is read as it was for the survey; a flag beats what the survey says of that. The names of the files "
+        "are printed."
+    )
+    own.add_argument("survey", metavar="SURVEY", type=Path, help="a survey.json, or the directory that holds it")
     own.add_argument("--map", metavar="MAP", help="the surveyed map, where the survey's own name for it leads nowhere")
     own.add_argument(
-        "-o", "--out", metavar="DIR", type=Path, help="where the figures go (default: figures, beside the survey)"
+        "-o", "--out", metavar="DIR", type=place, help="where the figures go (default: figures, beside the survey)"
     )
     own.add_argument(
         "--format", type=formats, default=("png", "svg"), metavar="png,svg", help="png, svg or pdf, or several of them"
@@ -44,30 +48,33 @@ def formats(text: str) -> tuple[str, ...]:
 
 def run(arguments: argparse.Namespace) -> None:
     """Draw the figures."""
+    from groundplan.maps import read
     from groundplan.survey import Survey
 
+    path = arguments.survey / "survey.json" if arguments.survey.is_dir() else arguments.survey
     try:
-        survey = Survey.read(arguments.survey)
+        survey = Survey.read(path)
     except FormatError as fault:
-        named = fault if fault.code == "survey.read" else FormatError(fault.code, f"{arguments.survey}: {fault}")
+        named = fault if fault.code == "survey.read" else FormatError(fault.code, f"{path}: {fault}")
         raise named from fault
-    source = arguments.map if arguments.map is not None else find_map(survey, arguments.survey)
+    source = arguments.map if arguments.map is not None else find_map(survey, path)
+    frame = {"resolution": survey.map.resolution, "origin": survey.map.origin}
     with terminal.status(arguments.quiet) as status:
-        map = read_map(source, arguments, resolution=survey.map.resolution, origin=survey.map.origin)
-        agree(survey, map, arguments.survey, source, arguments.quiet)
+        map = read(source, **{**survey.reading, **reading(arguments), **frame})
+        agree(survey, map, path, source, arguments.quiet)
         status("drawing the figures")
         from groundplan.figures import draw_figures
 
-        place = arguments.out if arguments.out is not None else arguments.survey.parent / "figures"
+        out = arguments.out if arguments.out is not None else path.parent / "figures"
         drawn = draw_figures(
-            survey, map, place, formats=arguments.format, progress=lambda what: status(f"drawing {what}")
+            survey, map, out, formats=arguments.format, progress=lambda what: status(f"drawing {what}")
         )
     if not arguments.quiet:
         terminal.put("".join(f"{path}\n" for path in drawn))
 
 
 def find_map(survey: Survey, path: Path) -> str:
-    """The map that a survey names, seen from here, from beside the survey, or from a directory that holds it.
+    """The map that a survey names, seen from the survey's directory, from here, or from a directory above.
 
     Raises
     ------
@@ -76,10 +83,10 @@ def find_map(survey: Survey, path: Path) -> str:
     """
     if survey.source is None:
         raise FormatError("survey.source", f"{path} does not say which map it is of", "--map MAP names it")
-    # The last are where the survey was made, if it was written to a directory below.
-    for place in (Path(), *path.absolute().parents):
-        if (place / survey.source).is_file():
-            return str(place / survey.source)
+    # A survey that was printed is of the directory where that was done, maybe one above.
+    for seen in (path.resolve().parent, Path(), *path.absolute().parents):
+        if (seen / survey.source).is_file():
+            return os.path.normpath(seen / survey.source)
     raise FormatError(
         "survey.source", f"{path} is of the map {survey.source}, which is not there", "--map MAP says where it is now"
     )
@@ -103,6 +110,7 @@ def agree(survey: Survey, map: Map, path: Path, source: str, quiet: bool) -> Non
     import numpy as np
 
     from groundplan.maps import UNKNOWN
+    from groundplan.maps._warnings import percent
 
     counts = np.zeros(256, np.int64)
     for row in map.pixels:  # no copy of a map that may be larger than memory
@@ -113,6 +121,6 @@ def agree(survey: Survey, map: Map, path: Path, source: str, quiet: bool) -> Non
         total = map.width * map.height
         terminal.say(
             "warning",
-            f"{100 * now / total:.1f} % of {source} is unknown, and {100 * then / total:.1f} % was when it was "
+            f"{percent(now / total)} of {source} is unknown, and {percent(then / total)} was when it was "
             "surveyed: it was read with other flags then",
         )

@@ -5,11 +5,10 @@ from __future__ import annotations
 import argparse
 import dataclasses
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from groundplan._cli import terminal
-from groundplan._cli.arguments import Parser
+from groundplan._cli.arguments import Parser, place
 
 
 def fill(own: argparse.ArgumentParser) -> None:
@@ -43,12 +42,12 @@ def _fill_office(own: Parser) -> None:
     _fill_place(own, "office", OfficeOptions)
 
 
-def _fill_place(own: Parser, place: str, options: type[Any]) -> None:
-    own.usage = f"groundplan simulate {place} -o DIR [--seed N] [flags]"
-    own.set_defaults(parser=own, place=place)
-    own.add_argument("-o", "--out", metavar="DIR", type=Path, required=True, help="where the files go")
+def _fill_place(own: Parser, kind: str, options: type[Any]) -> None:
+    own.usage = f"groundplan simulate {kind} -o DIR [--seed N] [flags]"
+    own.set_defaults(parser=own, place=kind)
+    own.add_argument("-o", "--out", metavar="DIR", type=place, required=True, help="where the files go")
     own.add_argument("--seed", type=_seed, default=0, metavar="N", help="zero or more (default: 0)")
-    group = own.add_argument_group(f"the {place}")
+    group = own.add_argument_group(f"the {kind}")
     for option in dataclasses.fields(options):
         group.add_argument("--" + option.name.replace("_", "-"), dest=option.name, **_flag(option))
 
@@ -91,5 +90,5 @@ def run(arguments: argparse.Namespace) -> None:
         made = terminal.working(status, f"driving the {arguments.place}", lambda: make(seed=arguments.seed, **given))
         yaml = made.write(arguments.out, arguments.place)
     rooms = [yaml.with_suffix(".gt.png")] if made.rooms is not None else []
-    for place in (yaml.with_suffix(".pgm"), yaml, *rooms, yaml.with_name("truth.json")):
-        terminal.put(f"{place}\n")
+    for file in (yaml.with_suffix(".pgm"), yaml, *rooms, yaml.with_name("truth.json")):
+        terminal.put(f"{file}\n")

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundplan._cli import terminal
-from groundplan._cli.arguments import add_reading, count, number, numbers, read_map
+from groundplan._cli.arguments import add_reading, count, number, numbers, place, reading
 
 if TYPE_CHECKING:
     from groundplan.maps import Map
@@ -27,7 +27,7 @@ def fill(own: argparse.ArgumentParser) -> None:
         "-o",
         "--out",
         metavar="DIR",
-        type=Path,
+        type=place,
         help="where survey.json and survey.png go (default: the map's name with -survey, in the current directory)",
     )
     own.add_argument("--figures", action="store_true", help="draw the paper's figures 2 to 9 into DIR/figures too")
@@ -119,20 +119,21 @@ def run(arguments: argparse.Namespace) -> None:
 
     import groundplan
 
-    chosen = settings(arguments)
+    chosen, given = settings(arguments), reading(arguments)
     origin = arguments.origin
     if origin is not None and len(origin) not in (2, 3):
         arguments.parser.error(f"--origin has {len(origin)} numbers; it takes 2 or 3: X Y [YAW]")
     name = Path(arguments.map).name
     with terminal.status(arguments.quiet) as status:
-        map = read_map(arguments.map, arguments, resolution=arguments.resolution, origin=origin)
+        map = groundplan.read(arguments.map, **given)
         refuse_nothing(map, name)
         found = terminal.working(
             status, f"surveying {name}", lambda: groundplan.survey(map, threads=arguments.threads, **chosen)
         )
         named = dataclasses.replace(found.map, image=printable(found.map.image))
-        found = dataclasses.replace(found, map=named, source=printable(arguments.map))
-        written = write(arguments, found, map, status)
+        out = directory(arguments)
+        found = dataclasses.replace(found, map=named, source=seen_from(out or Path(), arguments.map), reading=given)
+        written = [] if out is None else write(out, found, map, status, figures=arguments.figures)
     if arguments.json:
         terminal.put(found.to_json())
     if not arguments.quiet:
@@ -142,8 +143,8 @@ def run(arguments: argparse.Namespace) -> None:
             terminal.put(summary(found))
         for warning in found.warnings:
             terminal.say("warning", f"{warning.message} [{warning.code}]")
-        for place in written:
-            terminal.say("wrote", place)
+        for file in written:
+            terminal.say("wrote", file)
 
 
 def refuse_nothing(map: Map, name: str) -> None:
@@ -169,24 +170,42 @@ def printable(path: str) -> str:
     return os.fsencode(path).decode("utf-8", "replace")
 
 
-def write(arguments: argparse.Namespace, survey: Survey, map: Map, status: terminal.Status) -> list[str]:
-    """Write the files that are asked for; the names of what was written."""
-    if arguments.json and arguments.out is None and not arguments.figures:
-        return []
+def directory(arguments: argparse.Namespace) -> Path | None:
+    """Where files go; None where none are asked for."""
+    if arguments.out is not None:
+        return Path(arguments.out)
+    if arguments.json and not arguments.figures:
+        return None
+    return Path(f"{Path(arguments.map).stem}-survey")
+
+
+def seen_from(out: Path, map: str) -> str:
+    """A map's path as a survey in `out` names it, with slashes: the same however either was typed."""
+    path = Path(map).expanduser() if map.startswith("~") else Path(map)
+    # Without links, because ".." leads out of what a link points to.
+    there = Path(os.path.realpath(path.parent)) / path.name
+    try:
+        relative = os.path.relpath(there, os.path.realpath(out))
+    except ValueError:  # on another drive
+        relative = path.name
+    return printable(Path(relative).as_posix())
+
+
+def write(out: Path, survey: Survey, map: Map, status: terminal.Status, *, figures: bool) -> list[str]:
+    """Write the files; the names of what was written."""
     from groundplan._files import whole
     from groundplan.figures import draw_survey
 
-    place = arguments.out if arguments.out is not None else Path(f"{Path(arguments.map).stem}-survey")
     status("drawing survey.png")
     # The survey is put in place after its picture: where the disk is full there is neither.
-    with whole(place / "survey.json") as beside:
+    with whole(out / "survey.json") as beside:
         beside.write_text(survey.to_json(), encoding="utf-8")
-        draw_survey(survey, map, place / "survey.png")
-    written = [str(place / "survey.json"), str(place / "survey.png")]
-    if arguments.figures:
+        draw_survey(survey, map, out / "survey.png")
+    written = [str(out / "survey.json"), str(out / "survey.png")]
+    if figures:
         from groundplan.figures import draw_figures
 
         status("drawing the figures")
-        drawn = draw_figures(survey, map, place / "figures", progress=lambda what: status(f"drawing {what}"))
-        written.append(f"{place / 'figures'}{os.sep} ({len(drawn)} files)")
+        drawn = draw_figures(survey, map, out / "figures", progress=lambda what: status(f"drawing {what}"))
+        written.append(f"{out / 'figures'}{os.sep} ({len(drawn)} files)")
     return written

@@ -15,6 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from groundplan._errors import FormatError, ParameterError
+from groundplan._files import unreadable
+from groundplan._format import check_format
 from groundplan.evaluate import _regions, _scores
 from groundplan.maps import Map
 
@@ -86,6 +88,7 @@ def score(survey: Document, truth: Document) -> dict[str, Any]:
         ``extra.missing`` without SciPy or Shapely.
     """
     found = _document(survey, "survey", ("directions", "lines", "labels"))
+    check_format(found, f"{Path(survey)}: " if isinstance(survey, str | os.PathLike) else "")
     true = _document(truth, "truth", ("directions", "lines", "corridors", "junctions"))
     parts = (_scores.direction_scores, _scores.line_scores, _scores.junction_scores, _scores.corridor_scores)
     result: dict[str, Any] = {}
@@ -108,7 +111,7 @@ def _document(source: Document, what: str, needed: tuple[str, ...]) -> dict[str,
         try:
             content = json.loads(Path(source).read_text(encoding="utf-8"))
         except OSError as fault:
-            raise FormatError("file.read", f"cannot read {name}: {fault.strerror or fault}") from fault
+            raise unreadable("file.read", name, fault) from fault
         except ValueError as fault:
             raise FormatError("file.json", f"{name} is not JSON: {fault}") from fault
     for key in needed:

@@ -5,7 +5,6 @@ Each score is a function of its own. Lengths are metres, angles radians, points 
 
 from __future__ import annotations
 
-import importlib
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -13,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from groundplan._errors import GroundplanError
+from groundplan._extras import needed
 
 Floats = npt.NDArray[np.float64]
 
@@ -28,15 +27,8 @@ _NO_MATCH = 1e6
 
 
 def optional(module: str) -> Any:
-    """Import a module of the optional extra, or say which extra is missing."""
-    try:
-        return importlib.import_module(module)
-    except ImportError as fault:
-        raise GroundplanError(
-            "extra.missing",
-            f"scoring needs {module.partition('.')[0]}, which is not installed",
-            "pip install 'groundplan[evaluate]'",
-        ) from fault
+    """A library that scoring needs."""
+    return needed(module, "evaluate")
 
 
 def turn(a: Any, b: Any) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 import numpy.typing as npt
@@ -19,9 +19,11 @@ class MapWarning:
     message: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Map:
     """An occupancy grid with its frame. Nothing is converted: a 256-entry table says what each value means.
+
+    Two are equal when all of them is, pixel by pixel.
 
     Attributes
     ----------
@@ -48,6 +50,16 @@ class Map:
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     image: str = ""
     warnings: tuple[MapWarning, ...] = field(default=())
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Map):
+            return NotImplemented
+        return all(np.array_equal(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"Map({self.image!r}, {self.width} x {self.height} pixels of {self.resolution:g} m)"
 
     @property
     def height(self) -> int:

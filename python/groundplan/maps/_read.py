@@ -276,7 +276,8 @@ def _interpret(
         if absent:
             named = ", ".join(map(str, absent))
             warnings.append(MapWarning("unknown-absent", f"no pixel has the grey {named} given as unknown"))
-    warnings += nonsense(shares(counts, states), high, low)
+    darker = any(warning.code == "unknown-as-occupied" for warning in warnings)
+    warnings += nonsense(shares(counts, states), high, low, walls_darker=darker)
     return pixels, values, states, warnings
 
 

@@ -18,6 +18,11 @@ MOSTLY = 0.5
 ROUNDING = 0.25
 
 
+def percent(share: float) -> str:
+    """A share in a sentence; what rounds to nothing is not said to be nothing."""
+    return "less than 0.1 %" if 0 < share < 0.0005 else f"{100 * share:.1f} %"
+
+
 def shares(counts: npt.NDArray[np.int64], states: npt.NDArray[np.uint8]) -> dict[int, float]:
     """Share of the picture in each state."""
     total = int(counts.sum())
@@ -52,7 +57,7 @@ def unknown_as_free(level: int, levels: Levels, meaning: Meaning) -> MapWarning:
     grey = levels.greys[level]
     return MapWarning(
         "unknown-as-free",
-        f"grey {grey} (p = {level / 255:.3f}, {100 * levels.window(level):.1f} % of the picture) counts as free by "
+        f"grey {grey} (p = {level / 255:.3f}, {percent(levels.window(level))} of the picture) counts as free by "
         f"free_thresh {meaning.free_thresh:g}, but a lighter free grey exists: it was read as unknown; "
         f"--unknown none reads it as free, --unknown {grey} confirms it",
     )
@@ -62,7 +67,7 @@ def grey_as_free(level: int, levels: Levels) -> MapWarning:
     grey = levels.greys[level]
     return MapWarning(
         "grey-as-free",
-        f"grey {grey} (p = {level / 255:.3f}, {100 * levels.window(level):.1f} % of the picture) counts as free beside "
+        f"grey {grey} (p = {level / 255:.3f}, {percent(levels.window(level))} of the picture) counts as free beside "
         f"a lighter free grey; if it is the inside of walls or not explored, --unknown {grey} says so",
     )
 
@@ -71,13 +76,15 @@ def unknown_as_occupied(level: int, levels: Levels, meaning: Meaning) -> MapWarn
     grey = levels.greys[level]
     return MapWarning(
         "unknown-as-occupied",
-        f"grey {grey} (p = {level / 255:.3f}, {100 * levels.window(level):.1f} % of the picture) counts as occupied by "
+        f"grey {grey} (p = {level / 255:.3f}, {percent(levels.window(level))} of the picture) counts as occupied by "
         f"occupied_thresh {meaning.occupied_thresh:g} although the walls are darker; if it is not explored or "
         f"outside, --unknown {grey} says so",
     )
 
 
-def nonsense(shares: dict[int, float], high: float | None, low: float | None) -> list[MapWarning]:
+def nonsense(
+    shares: dict[int, float], high: float | None, low: float | None, *, walls_darker: bool = False
+) -> list[MapWarning]:
     """Warnings of a map in which a class is missing, or nearly all there is.
 
     Parameters
@@ -86,6 +93,8 @@ def nonsense(shares: dict[int, float], high: float | None, low: float | None) ->
         Share of the picture in each state.
     high, low : float or None
         Thresholds that would fit the picture better than those stated.
+    walls_darker : bool
+        Whether it is told already that a grey counts as occupied although the walls are darker.
     """
     warnings = []
     if shares[FREE] == 0:
@@ -98,13 +107,9 @@ def nonsense(shares: dict[int, float], high: float | None, low: float | None) ->
         said = f"most dark greys of the picture count as unknown; --occupied-thresh {high:g} would make them occupied"
         warnings.append(MapWarning("walls-as-unknown", said))
     if shares[OCCUPIED] > MOSTLY and shares[FREE] > 0:
-        warnings.append(
-            MapWarning(
-                "outside-occupied",
-                f"{100 * shares[OCCUPIED]:.1f} % of the map is occupied: outside and walls have the same grey and "
-                "cannot be told apart, which needs no flag; if black is meant to be free, --negate says so",
-            )
-        )
+        same = "outside and walls have the same grey and cannot be told apart, which needs no flag; "
+        said = f"{percent(shares[OCCUPIED])} of the map is occupied: {'' if walls_darker else same}"
+        warnings.append(MapWarning("outside-occupied", f"{said}if black is meant to be free, --negate says so"))
     return warnings
 
 

@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from groundplan._errors import MapError
+from groundplan._files import absent
 from groundplan.maps._map import MapWarning
 
 if TYPE_CHECKING:
@@ -116,7 +117,7 @@ def open_file(path: Path) -> BinaryIO:
             raise MapError("map.unreadable", f"{path} is not a regular file")
         return path.open("rb")
     except FileNotFoundError as fault:
-        raise MapError("map.missing", f"{path} does not exist") from fault
+        raise MapError("map.missing", absent(path)) from fault
     except (OSError, ValueError) as fault:
         raise MapError("map.unreadable", f"cannot read {path}: {getattr(fault, 'strerror', None) or fault}") from fault
 

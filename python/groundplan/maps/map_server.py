@@ -81,7 +81,7 @@ def check_resolution(value: object, where: str) -> float:
             "map.resolution",
             f"{where}: resolution {shown(value)} is not a number of metres a pixel between "
             f"{SMALLEST_RESOLUTION:g} and {LARGEST_RESOLUTION:g}",
-            "--resolution sets it, such as --resolution 0.05",
+            "--resolution sets it, such as --resolution 0.05" if where != "resolution" else None,
         )
     return metres
 
@@ -182,6 +182,8 @@ def _image(path: Path, fields: dict[str, object]) -> tuple[Path, list[MapWarning
     image = path.parent / name
     beside = path.parent / name.replace("\\", "/").rsplit("/", 1)[-1]
     try:
+        if image.is_dir():
+            raise MapError("map.directory", f"{path} names the image {name}, which is a directory")
         if image.exists():
             return image, []
         if beside.is_file():
