@@ -15,7 +15,7 @@ import groundplan
 from groundplan import Directions, GroundplanError, Lines, MapError, ParameterError
 
 #: Maps with labels that a hundredth of a degree decides.
-CLOSE = frozenset({"pillars", "triangle_grid", "all_occupied", "diagonal_only", "skewed"})
+CLOSE = frozenset({"pillars", "triangle_grid", "all_occupied", "diagonal_only", "skewed", "two_blocks_of_racks"})
 
 
 def survey(name: str, **given: Any) -> groundplan.Survey:
