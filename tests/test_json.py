@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ import zoo
 from zoo import ZOO
 
 from groundplan import FormatError, Survey
+from groundplan.survey import READING
 
 
 @pytest.mark.parametrize("name", ZOO)
@@ -124,3 +126,20 @@ def test_arrays_have_the_types_they_say() -> None:
     assert again.walls.points.shape == (0, 2)
     assert again.lines.directions.dtype == np.uint32
     assert again.adjacency.connected.dtype == np.bool_
+
+
+def test_every_key_is_described() -> None:
+    page = (Path(__file__).parents[1] / "docs/survey.md").read_text(encoding="utf-8")
+    trees = [json.loads(dataclasses.replace(zoo.surveyed(name), source="map.yaml").to_json()) for name in ZOO]
+    for part in trees[0]:
+        assert f"\n| `{part}` |" in page
+    for tree in trees:
+        for part in tree.keys() - {"format", "version", "parameters", "vertices", "labels"}:
+            described = page.partition(f"**{part}**:")[2].partition("\n\n")[0]
+            records = tree[part] if isinstance(tree[part], list) else [tree[part]]
+            keys = {key for entry in records for key in entry}
+            assert {key for key in keys if f"`{key}`" not in described} == set(), part
+        for label in tree["labels"]:
+            row = page.partition(f"\n| `{label['kind']}` |")[2].partition("\n")[0]
+            assert {key for key in label if key != "kind" and f"`{key}`" not in row} == set(), label["kind"]
+    assert all(f"`{name}`" in page for name in READING)
