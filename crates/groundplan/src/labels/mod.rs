@@ -4,6 +4,7 @@ mod corridors;
 mod junctions;
 mod outline;
 mod paper;
+mod rooms;
 mod strips;
 mod turned;
 

@@ -3,7 +3,7 @@
 use super::corridors::{self, Strip};
 use super::junctions::{self, Meeting};
 use super::turned::Turned;
-use super::{Evidence, JunctionKind, Label};
+use super::{Evidence, JunctionKind, Label, rooms};
 use crate::grid::{State, tidy};
 
 /// A corridor that meets no other is at least so many times as long as wide.
@@ -61,6 +61,7 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
         });
     }
     labels.extend(junctions);
+    labels.extend(rooms::find(evidence, labels.len()));
     labels
 }
 
