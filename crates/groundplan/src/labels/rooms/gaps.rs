@@ -17,6 +17,24 @@ impl Bar {
         ((q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)).sqrt()
     }
 
+    /// True when one of its jambs belongs to something solid that stands by itself.
+    pub fn is_at_solid(&self, raster: &Raster) -> bool {
+        let [ux, uy] = self.heading();
+        let jamb = |[x, y]: [f64; 2], way: f64| {
+            (1..=JAMB_PIXELS)
+                .filter_map(|n| raster.at([x + way * ux * f64::from(n), y + way * uy * f64::from(n)]))
+                .any(|pixel| raster.solid[pixel])
+        };
+        jamb(self.ends[0], -1.0) || jamb(self.ends[1], 1.0)
+    }
+
+    /// True when both ends are within a distance of the other's.
+    pub fn is_near(&self, other: &Self, distance: f64) -> bool {
+        let near = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2) <= distance * distance;
+        let ([a, b], [c, d]) = (self.ends, other.ends);
+        (near(a, c) && near(b, d)) || (near(a, d) && near(b, c))
+    }
+
     /// Unit vector from the first end to the second.
     pub fn heading(&self) -> [f64; 2] {
         let [p, q] = self.ends;
@@ -36,6 +54,9 @@ const JAMB: f64 = 0.6;
 const LINED: f64 = 0.6;
 /// Edge pixels this near to a line lie on it: metres, and pixels at least.
 const ON_LINE: (f64, f64) = (0.12, 2.0);
+
+/// A jamb lies within so many pixels of a bar's end.
+const JAMB_PIXELS: i32 = 4;
 
 /// Gaps along every line of every direction, in the lines' order.
 pub fn along_lines(evidence: &Evidence, raster: &Raster) -> Vec<Bar> {
@@ -94,7 +115,7 @@ impl<'a> Line<'a> {
     /// The line n.p = offset on the grid, in pixels, n normal to the angle.
     fn new(raster: &'a Raster, angle: f64, offset: f64) -> Self {
         let step = [libm::cos(angle), libm::sin(angle)];
-        let origin = raster.from_grid([-step[1] * offset, step[0] * offset]);
+        let origin = raster.of_grid([-step[1] * offset, step[0] * offset]);
         Self { raster, origin, step }
     }
 

@@ -14,6 +14,7 @@ mod raster;
 use super::{Evidence, Label, Purpose};
 use crate::grid::{State, tidy};
 use cells::Rules;
+use gaps::Bar;
 use raster::Raster;
 use std::f64::consts::FRAC_PI_2;
 
@@ -32,6 +33,8 @@ const ROW: f64 = 1.0;
 const BESIDE: i32 = 8;
 /// Openings between the same two regions are one when they are nearer than this share of their width.
 const SAME: f64 = 0.75;
+/// A gap and a narrow whose ends are this near are one opening; so are pieces of openings that come this near, metres.
+const TOGETHER: f64 = 0.35;
 
 /// A region while its label is made.
 struct Region {
@@ -55,17 +58,38 @@ impl Doorway {
     }
 
     fn width(&self) -> f64 {
-        let [p, q] = self.ends;
-        ((q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)).sqrt()
+        distance(self.ends[0], self.ends[1])
     }
+
+    /// Another closure of the same opening, or another piece of it.
+    fn is_same(&self, other: &Self, near: f64) -> bool {
+        let touch = || self.ends.iter().any(|&p| other.ends.iter().any(|&q| distance(p, q) <= near));
+        let overlap = distance(self.middle(), other.middle()) <= SAME * self.width().max(other.width());
+        self.between == other.between && (overlap || touch())
+    }
+
+    /// Takes in another: from the one's end to the other's that lie farthest apart.
+    fn extend(&mut self, other: &Self) {
+        let all = [self.ends[0], self.ends[1], other.ends[0], other.ends[1]];
+        for p in all {
+            for q in all {
+                if distance(p, q) > self.width() {
+                    self.ends = [p, q];
+                }
+            }
+        }
+    }
+}
+
+fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
+    ((q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)).sqrt()
 }
 
 /// Regions, then the doors between them; `first` is the id of the first of these labels.
 pub fn find(evidence: &Evidence, first: usize) -> Vec<Label> {
     let Some(raster) = Raster::new(evidence.grid) else { return Vec::new() };
     let clearance = raster.clearance();
-    let mut bars = narrows::find(&raster, &clearance);
-    bars.extend(gaps::along_lines(evidence, &raster));
+    let bars = bars(evidence, &raster, &clearance);
     let parameters = evidence.parameters;
     let rules = Rules { openness: parameters.rooms_openness, least_area: parameters.rooms_min_area };
     let mut cells = cells::find(&raster, &bars, &rules);
@@ -114,6 +138,21 @@ pub fn find(evidence: &Evidence, first: usize) -> Vec<Label> {
     labels
 }
 
+/// Everything that may be a door: gaps in walls, and narrows where there is no such gap.
+fn bars(evidence: &Evidence, raster: &Raster, clearance: &[u32]) -> Vec<Bar> {
+    let mut bars = gaps::along_lines(evidence, raster);
+
+    bars.retain(|bar| !bar.is_at_solid(raster));
+    let gaps = bars.len();
+    for narrow in narrows::find(raster, clearance) {
+        let known = bars[..gaps].iter().any(|gap| gap.is_near(&narrow, raster.pixels(TOGETHER)));
+        if !known && !narrow.is_at_solid(raster) {
+            bars.push(narrow);
+        }
+    }
+    bars
+}
+
 /// Square metres that were seen free.
 fn area(raster: &Raster, pixels: &[usize]) -> f64 {
     pixels.iter().filter(|&&pixel| raster.seen[pixel]).count() as f64 * raster.resolution.powi(2)
@@ -139,7 +178,9 @@ fn regions(evidence: &Evidence, raster: &Raster, clearance: &[u32], numbers: &mu
     let mut next = 0;
     for (list, stays) in pieces.lists.iter().zip(stays) {
         next += u32::from(stays);
-        list.iter().for_each(|&pixel| numbers[pixel] = if stays { next } else { 0 });
+        for &pixel in list {
+            numbers[pixel] = if stays { next } else { 0 };
+        }
     }
     cells::fill_cuts(raster, numbers);
     let mut lists = vec![Vec::new(); next as usize];
@@ -179,7 +220,7 @@ fn sort_by_rows(regions: &mut [Region]) {
 fn doorways(raster: &Raster, numbers: &[u32], openings: Vec<[[f64; 2]; 2]>) -> Vec<Doorway> {
     let mut found: Vec<Doorway> = Vec::new();
     for ends in openings {
-        let [ux, uy] = gaps::Bar { ends }.heading();
+        let [ux, uy] = Bar { ends }.heading();
         let door = Doorway { between: [0; 2], ends };
         let [x, y] = door.middle();
         let beside = |side: f64| {
@@ -195,14 +236,8 @@ fn doorways(raster: &Raster, numbers: &[u32], openings: Vec<[[f64; 2]; 2]>) -> V
             continue;
         }
         let door = Doorway { between: [left.min(right), left.max(right)], ..door };
-        let near = |other: &&mut Doorway| {
-            let ([x, y], [u, v]) = (door.middle(), other.middle());
-            let reach = SAME * door.width().max(other.width());
-            door.between == other.between && (x - u).powi(2) + (y - v).powi(2) <= reach * reach
-        };
-        match found.iter_mut().find(near) {
-            Some(other) if other.width() < door.width() => *other = door,
-            Some(_) => {}
+        match found.iter_mut().find(|other| other.is_same(&door, raster.pixels(TOGETHER))) {
+            Some(other) => other.extend(&door),
             None => found.push(door),
         }
     }
@@ -213,7 +248,7 @@ fn doorways(raster: &Raster, numbers: &[u32], openings: Vec<[[f64; 2]; 2]>) -> V
 fn faces(evidence: &Evidence, raster: &Raster, numbers: &[u32], count: usize) -> Vec<Vec<u32>> {
     let mut faces = vec![Vec::new(); count + 1];
     for (face, &centre) in evidence.subdivision.centres.iter().enumerate() {
-        let place = raster.from_grid(evidence.grid.frame.to_pixels(centre));
+        let place = raster.of_grid(evidence.grid.frame.to_pixels(centre));
         if let Some(pixel) = raster.at(place)
             && evidence.occupancy.states[face] == State::Free
         {

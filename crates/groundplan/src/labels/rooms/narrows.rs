@@ -65,7 +65,9 @@ fn basins(raster: &Raster, clearance: &[u32]) -> Vec<u32> {
         }
         basins[pixel] = here;
     }
-    basins.iter_mut().for_each(|basin| *basin = sets.of(*basin));
+    for basin in &mut basins {
+        *basin = sets.of(*basin);
+    }
     basins
 }
 

@@ -20,8 +20,10 @@ pub fn rings(raster: &Raster, regions: &[u32], region: u32, pixels: &[usize]) ->
         for side in 0..4 {
             if tracer.is_border((pixel, side)) && !seen.contains(&(pixel, side)) {
                 let ring = tracer.trace((pixel, side), &mut seen);
-                let ring: Vec<[f64; 2]> =
-                    simplify(ring).into_iter().map(|[x, y]| raster.to_grid([x as f64 / 2.0, y as f64 / 2.0])).collect();
+                let ring: Vec<[f64; 2]> = simplify(&ring)
+                    .into_iter()
+                    .map(|[x, y]| raster.to_grid([x as f64 / 2.0, y as f64 / 2.0]))
+                    .collect();
                 if ring.len() >= 3 {
                     rings.push(ring);
                 }
@@ -107,7 +109,7 @@ impl Tracer<'_> {
 }
 
 /// Between points where three regions meet, a border is simplified the same from both its sides.
-fn simplify(ring: Vec<Node>) -> Vec<Point> {
+fn simplify(ring: &[Node]) -> Vec<Point> {
     let count = ring.len();
     let mut fixed: Vec<usize> = (0..count).filter(|&n| ring[n].1).collect();
     if fixed.is_empty() {

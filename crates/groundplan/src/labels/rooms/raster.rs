@@ -15,6 +15,8 @@ pub struct Raster {
     pub seen: Vec<bool>,
     /// Seen free, or something small that stands in free space.
     pub free: Vec<bool>,
+    /// Part of something that stands by itself in free space and is too thick for a wall: a rack, goods, a machine.
+    pub solid: Vec<bool>,
 }
 
 /// What stands by itself in free space and is no longer than this, metres, is a chair's or a table's leg, no wall.
@@ -22,6 +24,10 @@ const LEG: f64 = 0.8;
 /// The same for what is not slim: bins, pillars; a wall is less thick than this share of its length.
 const BLOB: f64 = 1.5;
 const SLIM: f64 = 0.4;
+/// What stands by itself, is so thick (from, to), metres, and fills its rectangle by this share, is no wall: no door has a jamb
+/// there.
+const SOLID: (f64, f64) = (0.7, 4.0);
+const FILLED: f64 = 0.95;
 
 impl Raster {
     /// Nothing when there is no free space.
@@ -48,8 +54,16 @@ impl Raster {
             }
         }
         let corner = low.map(|n| n as f64 - 1.0);
-        let mut made = Self { width, height, corner, resolution: grid.frame.resolution, free: seen.clone(), seen };
-        made.fill_furniture();
+        let mut made = Self {
+            width,
+            height,
+            corner,
+            resolution: grid.frame.resolution,
+            free: seen.clone(),
+            solid: vec![false; seen.len()],
+            seen,
+        };
+        made.sort_islands();
         Some(made)
     }
 
@@ -64,7 +78,7 @@ impl Raster {
     }
 
     /// The inverse of [`Raster::to_grid`].
-    pub fn from_grid(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub fn of_grid(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [x - self.corner[0] - 0.5, y - self.corner[1] - 0.5]
     }
 
@@ -122,8 +136,9 @@ impl Raster {
         Pieces { numbers, lists }
     }
 
-    /// Fills what stands by itself in free space and is too small or too stout for a wall: furniture, bins, pillars.
-    fn fill_furniture(&mut self) {
+    /// Looks at what stands by itself in free space: fills what is too small or too stout for a wall (furniture, bins,
+    /// pillars), and marks what is solid.
+    fn sort_islands(&mut self) {
         let mut reached = self.seen.clone();
         for start in 0..reached.len() {
             if reached[start] {
@@ -147,8 +162,22 @@ impl Raster {
                     }
                 }
             }
-            if alone && self.is_furniture(&island) {
-                island.into_iter().for_each(|pixel| self.free[pixel] = true);
+            if !alone {
+                continue;
+            }
+            let [length, thickness] = self.extent(&island);
+            let longest = length.min(self.pixels(BLOB));
+            let marks = if length <= self.pixels(LEG) || (length <= longest && thickness >= SLIM * length) {
+                &mut self.free
+            } else if (self.pixels(SOLID.0)..=self.pixels(SOLID.1)).contains(&thickness)
+                && island.len() as f64 >= FILLED * length * thickness
+            {
+                &mut self.solid
+            } else {
+                continue;
+            };
+            for pixel in island {
+                marks[pixel] = true;
             }
         }
     }
@@ -166,20 +195,15 @@ impl Raster {
         }
     }
 
-    /// Length and thickness are those of the rectangle with the island's second moments.
-    fn is_furniture(&self, island: &[usize]) -> bool {
-        let longest = self.pixels(BLOB);
-        if island.len() as f64 > longest * longest {
-            return false;
-        }
+    /// Length and thickness of the rectangle with an island's second moments, pixels.
+    fn extent(&self, island: &[usize]) -> [f64; 2] {
         let count = island.len() as f64;
         let places = || island.iter().map(|&pixel| self.place(pixel));
         let mean = [0, 1].map(|axis| places().map(|p| p[axis]).sum::<f64>() / count);
         let moment = |a: usize, b: usize| places().map(|p| (p[a] - mean[a]) * (p[b] - mean[b])).sum::<f64>() / count;
         let (xx, xy, yy) = (moment(0, 0), moment(0, 1), moment(1, 1));
         let (middle, half) = (f64::midpoint(xx, yy), ((0.5 * (xx - yy)).powi(2) + xy * xy).sqrt());
-        let [length, thickness] = [middle + half, middle - half].map(|m| (12.0 * m.max(0.0)).sqrt() + 1.0);
-        length <= self.pixels(LEG) || (length <= longest && thickness >= SLIM * length)
+        [middle + half, middle - half].map(|m| (12.0 * m.max(0.0) + 1.0).sqrt())
     }
 
     /// Squared distance of each pixel to the nearest that is not free, in pixels (Meijster, Roerdink and Hesselink 2000).
