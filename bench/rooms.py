@@ -16,6 +16,7 @@ SETS = {"bare": "", "furnished": "_furnitures", "furnished, bins": "_furnitures_
 
 
 def main(settings: list[str]) -> None:
+    """Survey every map and print the table."""
     sys.path.insert(0, str(SHARED / "tools"))
     try:
         import cv2
@@ -40,11 +41,15 @@ def main(settings: list[str]) -> None:
             score = evaluate(drop_small(labels), read_gt(str(maps / f"{name}.gt.png")))
             doors = sum(label["kind"] == "door" for label in document["labels"])
             rows.append((score["iou_1to1"], score["mcc"], score["n_gt"], score["n_seg"], doors, took))
-            print(f"{name + suffix:40} {rows[-1][0]:8.3f} {rows[-1][1]:5.3f} {rows[-1][2]:6} {rows[-1][3]:6}"
-                  f" {doors:6} {took:6.0f}")
+            print(
+                f"{name + suffix:40} {rows[-1][0]:8.3f} {rows[-1][1]:5.3f} {rows[-1][2]:6} {rows[-1][3]:6}"
+                f" {doors:6} {took:6.0f}"
+            )
         means = [sum(column) / len(rows) for column in zip(*rows, strict=True)]
-        print(f"{'mean, ' + title:40} {means[0]:8.3f} {means[1]:5.3f} {means[2]:6.1f} {means[3]:6.1f}"
-              f" {means[4]:6.1f} {means[5]:6.0f}\n")
+        print(
+            f"{'mean, ' + title:40} {means[0]:8.3f} {means[1]:5.3f} {means[2]:6.1f} {means[3]:6.1f}"
+            f" {means[4]:6.1f} {means[5]:6.0f}\n"
+        )
 
 
 if __name__ == "__main__":

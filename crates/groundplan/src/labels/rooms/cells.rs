@@ -7,13 +7,15 @@ use std::collections::BinaryHeap;
 
 /// Bars go on into their jambs for so many pixels, so that nothing slips past their ends.
 const INTO_JAMBS: f64 = 4.0;
-/// What lies beside a bar is looked for within so many pixels.
-const BESIDE: i32 = 4;
+/// What lies beside a bar is looked for within so many pixels: bars may lie close together.
+const BESIDE: i32 = 12;
 /// How far beyond an opening the space is measured, metres, and in what steps, pixels.
 const DEPTH: f64 = 2.0;
 const STEP: f64 = 2.0;
 /// Of two openings as wide as what they open into, the wider one goes first: so much for a metre.
 const PER_METRE: f64 = 0.001;
+/// Pieces this small beside others are the thickness of a wall in a doorway, and widen no space: square metres.
+const DOORWAY: f64 = 1.0;
 /// A piece whose outline is open for more than this share is part of what it opens into.
 const OPEN: f64 = 0.6;
 
@@ -127,6 +129,8 @@ struct Joining<'a> {
     rules: &'a Rules,
     stretches: &'a [Stretch],
     numbers: Vec<u32>,
+    /// Pieces that are small, before they were joined.
+    small: Vec<bool>,
     sets: Sets,
     /// Of each set: pixels, pixels that touch something not free, and how often it has grown.
     area: Vec<usize>,
@@ -167,12 +171,14 @@ impl<'a> Joining<'a> {
     ) -> Self {
         let touches = |&&pixel: &&usize| raster.sides(pixel).iter().any(|&beside| !raster.free[beside]);
         let count = |list: &Vec<usize>| list.iter().filter(touches).count();
+        let least = DOORWAY / raster.resolution.powi(2);
         let none = std::iter::once(0);
         Self {
             raster,
             bars,
             rules,
             stretches,
+            small: std::iter::once(false).chain(pieces.lists.iter().map(|list| list.len() as f64 <= least)).collect(),
             area: none.clone().chain(pieces.lists.iter().map(Vec::len)).collect(),
             wall: none.chain(pieces.lists.iter().map(count)).collect(),
             sets: Sets::new(pieces.lists.len() + 1),
@@ -263,20 +269,26 @@ impl<'a> Joining<'a> {
         let [ux, uy] = self.bars[*bar].heading();
         let [x, y] = self.raster.place(pixels[pixels.len() / 2]);
         let deepest = self.raster.pixels(DEPTH);
-        let mut is_in = |place: [f64; 2]| {
-            self.raster.at(place).is_some_and(|pixel| match self.numbers[pixel] {
+        // Walls' thickness in a doorway counts only for the doorway's own piece, `own`.
+        let mut is_in = |place: [f64; 2], own: Option<u32>| {
+            let pixel = self.raster.at(place)?;
+            let number = self.numbers[pixel];
+            let inside = match number {
                 0 => self.raster.free[pixel],
-                number => self.sets.of(number) == set,
-            })
+                _ => {
+                    self.sets.of(number) == set && (own.is_none_or(|own| own == number) || !self.small[number as usize])
+                }
+            };
+            inside.then_some(number)
         };
         let mut widest = 0.0_f64;
         let mut depth = STEP;
         while depth <= deepest.max(STEP) {
             let [px, py] = [x - uy * side * depth, y + ux * side * depth];
-            if is_in([px, py]) {
-                let mut reach = |way: f64| {
+            if let Some(own) = is_in([px, py], None) {
+                let mut reach = |way: f64| -> f64 {
                     let mut n = 1.0;
-                    while is_in([px + way * ux * n, py + way * uy * n]) {
+                    while is_in([px + way * ux * n, py + way * uy * n], Some(own)).is_some() {
                         n += 1.0;
                     }
                     n

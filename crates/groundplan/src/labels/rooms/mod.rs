@@ -29,7 +29,7 @@ const DOOR_EVERY: f64 = 15.0;
 const HALL: f64 = 150.0;
 /// Regions are in one row when no gap wider than this parts them across, metres.
 const ROW: f64 = 1.0;
-/// The regions beside a door lie within so many pixels of it.
+/// The regions beside a door lie within so many pixels of it; the nearest pixel may be under the cut itself.
 const BESIDE: i32 = 8;
 /// Openings between the same two regions are one when they are nearer than this share of their width.
 const SAME: f64 = 0.75;
@@ -224,7 +224,7 @@ fn doorways(raster: &Raster, numbers: &[u32], openings: Vec<[[f64; 2]; 2]>) -> V
         let door = Doorway { between: [0; 2], ends };
         let [x, y] = door.middle();
         let beside = |side: f64| {
-            (1..=BESIDE)
+            (2..=BESIDE)
                 .map(|n| side * f64::from(n))
                 .filter_map(|n| raster.at([x - uy * n, y + ux * n]))
                 .map(|pixel| numbers[pixel])

@@ -27,7 +27,7 @@ const SLIM: f64 = 0.4;
 /// What stands by itself, is so thick (from, to), metres, and fills its rectangle by this share, is no wall: no door has a jamb
 /// there.
 const SOLID: (f64, f64) = (0.7, 4.0);
-const FILLED: f64 = 0.95;
+const FILLED: f64 = 0.97;
 
 impl Raster {
     /// Nothing when there is no free space.
