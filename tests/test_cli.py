@@ -118,7 +118,7 @@ def test_survey_writes_its_files_and_prints_a_table(tmp_path: Path, capsys: Capt
     assert files(tmp_path) == {"hall.yaml", "hall.pgm", "hall-survey/survey.json", "hall-survey/survey.png"}
     lines = ran.out.splitlines()
     assert [line.split()[0] for line in lines if not line.startswith(" ")] == [
-        *("map", "directions", "faces", "walls", "corridors", "junctions", "warnings")
+        *("map", "directions", "faces", "walls", "corridors", "junctions", "regions", "warnings")
     ]
     assert lines[0].split() == ["map", "hall.pgm"]
     assert lines[1].strip() == "14.0 x 10.0 m, 280 x 200 pixels of 0.05 m"

@@ -17,7 +17,9 @@ from groundplan import evaluate, simulate
 
 def kinds(survey: groundplan.Survey) -> Counter[str]:
     """How many of each: corridors, racks, and junctions by type."""
-    return Counter(str(label.get("type", label["kind"])) for label in survey.labels if label["kind"] != "region")
+    return Counter(
+        str(label.get("type", label["kind"])) for label in survey.labels if label["kind"] not in ("region", "door")
+    )
 
 
 EXPECTED: dict[str, dict[str, int]] = {

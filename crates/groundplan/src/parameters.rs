@@ -204,6 +204,12 @@ parameters! {
         "A corridor is at most this wide.";
     labels_min_aspect: f64 = 1.5, "labels.min_aspect", "", Range::Number(0.0, 100.0), false, "II-E",
         "A corridor is at least this many times as long as it is wide.";
+    rooms_max_opening: f64 = 3.5, "rooms.max_opening", "m", Range::Number(0.0, 100.0), false, "II-E",
+        "A gap in a wall may be a door when it is at most this wide.";
+    rooms_openness: f64 = 0.8, "rooms.openness", "", Range::Number(0.1, 1.0), false, "II-E",
+        "An opening parts two regions when it is narrower than this share of the space on its tighter side.";
+    rooms_min_area: f64 = 2.0, "rooms.min_area", "m2", Range::Number(0.0, 1e6), false, "II-E",
+        "A smaller piece of free space is part of what it opens into.";
 }
 
 impl Parameters {

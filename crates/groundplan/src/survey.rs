@@ -148,7 +148,8 @@ fn find_warnings(
     if !directions.angles.is_empty() && lines.is_empty() {
         warn("no-lines", "no line stands out of the radiograms".to_owned());
     }
-    if !lines.is_empty() && labels.is_empty() {
+    let is_way = |label: &Label| matches!(label, Label::Corridor { .. } | Label::Junction { .. });
+    if !lines.is_empty() && !labels.iter().any(is_way) {
         warn("no-labels", "no corridor and no junction was found".to_owned());
     }
     warnings

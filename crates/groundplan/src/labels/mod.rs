@@ -8,6 +8,7 @@ mod outline;
 mod paper;
 mod pitch;
 mod racks;
+mod rooms;
 mod strips;
 mod turned;
 

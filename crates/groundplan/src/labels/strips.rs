@@ -6,7 +6,7 @@ use super::junctions::{self, Meeting};
 use super::names::{Named, names};
 use super::racks::{self, Row};
 use super::turned::Turned;
-use super::{Evidence, JunctionKind, Label};
+use super::{Evidence, JunctionKind, Label, rooms};
 use crate::grid::{State, tidy};
 
 /// A corridor that meets no other is at least so many times as long as wide.
@@ -24,7 +24,7 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
     }
     let Plan { strips, meetings, ends, extents, rows } = plan;
 
-    // A face is of one junction, or of one corridor, or of none.
+    // A face is of one junction at most, and of one corridor.
     let mut faces = Faces::new(evidence, |state| state == State::Free);
     let junctions: Vec<Label> = meetings
         .iter()
@@ -51,6 +51,7 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
         weight: along[1] - along[0],
     });
     let names = names(&views, &named.collect::<Vec<_>>(), "A", "C");
+    let mut faces = Faces::new(evidence, |state| state == State::Free);
     let mut labels: Vec<Label> = strips
         .iter()
         .zip(&extents)
@@ -64,6 +65,7 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
         .collect();
     labels.extend(junctions);
     labels.extend(rack_labels(evidence, &views, &rows));
+    labels.extend(rooms::find(evidence, labels.len()));
     labels
 }
 

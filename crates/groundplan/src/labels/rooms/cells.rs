@@ -1,0 +1,324 @@
+//! The free space cut along all bars, and the pieces joined again where the way between them is no narrower than they
+//! are: what stays apart are regions, and what parts them are their openings.
+
+use super::gaps::Bar;
+use super::raster::{Raster, Sets};
+use std::collections::BinaryHeap;
+
+/// Bars go on into their jambs for so many pixels, so that nothing slips past their ends.
+const INTO_JAMBS: f64 = 4.0;
+/// What lies beside a bar is looked for within so many pixels: bars may lie close together.
+const BESIDE: i32 = 12;
+/// How far beyond an opening the space is measured, metres, and in what steps, pixels.
+const DEPTH: f64 = 2.0;
+const STEP: f64 = 2.0;
+/// Of two openings as wide as what they open into, the wider one goes first: so much for a metre.
+const PER_METRE: f64 = 0.001;
+/// Pieces this small beside others are the thickness of a wall in a doorway, and widen no space: square metres.
+const DOORWAY: f64 = 1.0;
+/// A piece whose outline is open for more than this share is part of what it opens into.
+const OPEN: f64 = 0.6;
+
+/// Regions by pixel, 0 for none, and the jambs of what parts them, in the raster's places.
+pub struct Cells {
+    pub regions: Vec<u32>,
+    pub openings: Vec<[[f64; 2]; 2]>,
+}
+
+/// A stretch of a bar, with a piece of free space on either side.
+struct Stretch {
+    pieces: [u32; 2],
+    bar: usize,
+    /// Pixels of the bar.
+    pixels: Vec<usize>,
+}
+
+/// How openings are judged.
+pub struct Rules {
+    /// An opening wider than this share of the space on its tighter side parts nothing.
+    pub openness: f64,
+    /// Square metres; less is no region.
+    pub least_area: f64,
+}
+
+/// Cuts the free space along all bars and joins what belongs together.
+pub fn find(raster: &Raster, bars: &[Bar], rules: &Rules) -> Cells {
+    let lines: Vec<Vec<usize>> = bars.iter().map(|bar| pixels_of(raster, bar)).collect();
+    let mut cut = raster.free.clone();
+    lines.iter().flatten().for_each(|&pixel| cut[pixel] = false);
+    let pieces = raster.pieces(|pixel| cut[pixel], |_, _| true);
+    let stretches = stretches(raster, bars, &lines, &pieces.numbers);
+    let mut joining = Joining::new(raster, bars, rules, &stretches, pieces);
+    joining.join_open();
+    joining.join_unwalled();
+    let numbers = std::mem::take(&mut joining.numbers);
+    let roots: Vec<u32> = (0..joining.wall.len() as u32).map(|n| joining.sets.of(n)).collect();
+    let mut regions: Vec<u32> = numbers.iter().map(|&n| roots[n as usize]).collect();
+    fill_cuts(raster, &mut regions);
+    let openings = stretches
+        .iter()
+        .filter(|stretch| roots[stretch.pieces[0] as usize] != roots[stretch.pieces[1] as usize])
+        .map(|stretch| ends(raster, &bars[stretch.bar], &stretch.pixels))
+        .collect();
+    Cells { regions, openings }
+}
+
+/// The free pixels under a bar, from its first end to its second.
+fn pixels_of(raster: &Raster, bar: &Bar) -> Vec<usize> {
+    let [ux, uy] = bar.heading();
+    let [p, q] = bar.ends;
+    let from = [p[0] - INTO_JAMBS * ux, p[1] - INTO_JAMBS * uy];
+    let to = [q[0] + INTO_JAMBS * ux, q[1] + INTO_JAMBS * uy];
+    // One pixel a step along the longer axis: pieces are joined by sides only, so a corner-to-corner line parts them.
+    let steps = (to[0] - from[0]).abs().max((to[1] - from[1]).abs()).ceil().max(1.0);
+    (0..=steps as usize)
+        .map(|n| [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * n as f64 / steps))
+        .filter_map(|place| raster.at(place).filter(|&pixel| raster.free[pixel]))
+        .collect()
+}
+
+/// Each bar's stretches, in the bars' order.
+fn stretches(raster: &Raster, bars: &[Bar], lines: &[Vec<usize>], numbers: &[u32]) -> Vec<Stretch> {
+    let mut found: Vec<Stretch> = Vec::new();
+    for (bar, line) in lines.iter().enumerate() {
+        let [ux, uy] = bars[bar].heading();
+        let first = found.len();
+        for &pixel in line {
+            let [x, y] = raster.place(pixel);
+            let piece = |side: f64| {
+                (1..=BESIDE)
+                    .map(|n| side * f64::from(n))
+                    .map_while(|n| raster.at([x - uy * n, y + ux * n]).filter(|&beside| raster.free[beside]))
+                    .map(|beside| numbers[beside])
+                    .find(|&number| number != 0)
+                    .unwrap_or(0)
+            };
+            let pieces = [piece(1.0), piece(-1.0)];
+            if pieces.contains(&0) || pieces[0] == pieces[1] {
+                continue;
+            }
+            match found[first..].iter_mut().find(|stretch| stretch.pieces == pieces) {
+                Some(stretch) => stretch.pixels.push(pixel),
+                None => found.push(Stretch { pieces, bar, pixels: vec![pixel] }),
+            }
+        }
+    }
+    found
+}
+
+/// Where a stretch begins and ends on its bar; at a jamb, when it comes near to one.
+fn ends(raster: &Raster, bar: &Bar, pixels: &[usize]) -> [[f64; 2]; 2] {
+    let [ux, uy] = bar.heading();
+    let along = |&pixel: &usize| {
+        let [x, y] = raster.place(pixel);
+        (x - bar.ends[0][0]) * ux + (y - bar.ends[0][1]) * uy
+    };
+    let low = pixels.iter().map(along).fold(f64::INFINITY, f64::min);
+    let high = pixels.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
+    let length = bar.length();
+    // The bar's ends are centres of free pixels: the jambs are half a pixel farther.
+    let low = if low <= INTO_JAMBS { -0.5 } else { low };
+    let high = if high >= length - INTO_JAMBS { length + 0.5 } else { high };
+    [low, high].map(|t| [bar.ends[0][0] + t * ux, bar.ends[0][1] + t * uy])
+}
+
+/// Pieces while they are joined.
+struct Joining<'a> {
+    raster: &'a Raster,
+    bars: &'a [Bar],
+    rules: &'a Rules,
+    stretches: &'a [Stretch],
+    numbers: Vec<u32>,
+    /// Pieces that are small, before they were joined.
+    small: Vec<bool>,
+    sets: Sets,
+    /// Of each set: pixels, pixels that touch something not free, and how often it has grown.
+    area: Vec<usize>,
+    wall: Vec<usize>,
+    age: Vec<u32>,
+}
+
+/// How open a stretch is, in the order of the most open first; ties go to the first.
+#[derive(PartialEq)]
+struct Openness {
+    value: f64,
+    stretch: usize,
+    /// The ages of its two sides when it was measured.
+    ages: [u32; 2],
+}
+
+impl Eq for Openness {}
+
+impl PartialOrd for Openness {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Openness {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.value.total_cmp(&other.value).then(other.stretch.cmp(&self.stretch))
+    }
+}
+
+impl<'a> Joining<'a> {
+    fn new(
+        raster: &'a Raster,
+        bars: &'a [Bar],
+        rules: &'a Rules,
+        stretches: &'a [Stretch],
+        pieces: super::raster::Pieces,
+    ) -> Self {
+        let touches = |&&pixel: &&usize| raster.sides(pixel).iter().any(|&beside| !raster.free[beside]);
+        let count = |list: &Vec<usize>| list.iter().filter(touches).count();
+        let least = DOORWAY / raster.resolution.powi(2);
+        let none = std::iter::once(0);
+        Self {
+            raster,
+            bars,
+            rules,
+            stretches,
+            small: std::iter::once(false).chain(pieces.lists.iter().map(|list| list.len() as f64 <= least)).collect(),
+            area: none.clone().chain(pieces.lists.iter().map(Vec::len)).collect(),
+            wall: none.chain(pieces.lists.iter().map(count)).collect(),
+            sets: Sets::new(pieces.lists.len() + 1),
+            age: vec![0; pieces.lists.len() + 1],
+            numbers: pieces.numbers,
+        }
+    }
+
+    /// The sets on both sides of a stretch.
+    fn sides(&mut self, stretch: usize) -> [u32; 2] {
+        self.stretches[stretch].pieces.map(|piece| self.sets.of(piece))
+    }
+
+    fn join(&mut self, [a, b]: [u32; 2]) {
+        let (to, other) = if self.area[a as usize] >= self.area[b as usize] { (a, b) } else { (b, a) };
+        self.sets.join(to, other);
+        let (to, other) = (to as usize, other as usize);
+        self.area[to] += self.area[other];
+        self.wall[to] += self.wall[other];
+        self.age[to] = self.age[to].max(self.age[other]) + 1;
+    }
+
+    /// Joins across the most open stretch, again and again, while there is one that parts nothing. A set that grows only
+    /// makes its openings less open, so that each is measured anew only when its turn comes.
+    fn join_open(&mut self) {
+        let mut queue: BinaryHeap<Openness> = (0..self.stretches.len()).map(|n| self.measure(n)).collect();
+        while let Some(most) = queue.pop() {
+            let sides = self.sides(most.stretch);
+            if sides[0] == sides[1] {
+                continue;
+            }
+            if sides.map(|side| self.age[side as usize]) != most.ages {
+                queue.push(self.measure(most.stretch));
+            } else if most.value >= self.rules.openness {
+                self.join(sides);
+            } else {
+                break;
+            }
+        }
+    }
+
+    /// Joins what has more openings than walls to what it opens into most, the most open first.
+    fn join_unwalled(&mut self) {
+        loop {
+            let mut open = vec![0usize; self.wall.len()];
+            for n in 0..self.stretches.len() {
+                let [a, b] = self.sides(n);
+                if a != b {
+                    open[a as usize] += self.stretches[n].pixels.len();
+                    open[b as usize] += self.stretches[n].pixels.len();
+                }
+            }
+            let share =
+                |set: u32| open[set as usize] as f64 / (open[set as usize] + self.wall[set as usize]).max(1) as f64;
+            let unwalled: Vec<bool> = (0..self.wall.len() as u32).map(|set| share(set) > OPEN).collect();
+            let mut best: Option<Openness> = None;
+            for n in 0..self.stretches.len() {
+                let sides = self.sides(n);
+                if sides[0] != sides[1] && sides.iter().any(|&side| unwalled[side as usize]) {
+                    best = best.max(Some(self.measure(n)));
+                }
+            }
+            let Some(best) = best else { break };
+            let sides = self.sides(best.stretch);
+            self.join(sides);
+        }
+    }
+
+    /// The width of a stretch over the width of the space on its tighter side.
+    fn measure(&mut self, stretch: usize) -> Openness {
+        let sides = self.sides(stretch);
+        let ages = sides.map(|side| self.age[side as usize]);
+        let Stretch { bar, pixels, .. } = &self.stretches[stretch];
+        // A stretch of a slanted bar has fewer pixels than it is long.
+        let width = self.bars[*bar].length().min(std::f64::consts::SQRT_2 * pixels.len() as f64);
+        let beyond = self.beyond(stretch, sides[0], 1.0).min(self.beyond(stretch, sides[1], -1.0));
+        let share = if beyond > 0.0 { (width / beyond).min(1.0) } else { 1.0 };
+        let tie = PER_METRE * width * self.raster.resolution;
+        let area = sides.map(|side| self.area[side as usize]).into_iter().min().unwrap_or(0) as f64;
+        // What is too small for a region goes first of all.
+        let small = area * self.raster.resolution.powi(2) <= self.rules.least_area;
+        Openness { value: share + tie + if small { 10.0 } else { 0.0 }, stretch, ages }
+    }
+
+    /// How wide a set is beyond a stretch, at its widest within [`DEPTH`], measured along the bar, pixels.
+    fn beyond(&mut self, stretch: usize, set: u32, side: f64) -> f64 {
+        let Stretch { bar, pixels, .. } = &self.stretches[stretch];
+        let [ux, uy] = self.bars[*bar].heading();
+        let [x, y] = self.raster.place(pixels[pixels.len() / 2]);
+        let deepest = self.raster.pixels(DEPTH);
+        // Walls' thickness in a doorway counts only for the doorway's own piece, `own`.
+        let mut is_in = |place: [f64; 2], own: Option<u32>| {
+            let pixel = self.raster.at(place)?;
+            let number = self.numbers[pixel];
+            let inside = match number {
+                0 => self.raster.free[pixel],
+                _ => {
+                    self.sets.of(number) == set && (own.is_none_or(|own| own == number) || !self.small[number as usize])
+                }
+            };
+            inside.then_some(number)
+        };
+        let mut widest = 0.0_f64;
+        let mut depth = STEP;
+        while depth <= deepest.max(STEP) {
+            let [px, py] = [x - uy * side * depth, y + ux * side * depth];
+            if let Some(own) = is_in([px, py], None) {
+                let mut reach = |way: f64| -> f64 {
+                    let mut n = 1.0;
+                    while is_in([px + way * ux * n, py + way * uy * n], Some(own)).is_some() {
+                        n += 1.0;
+                    }
+                    n
+                };
+                widest = widest.max(reach(1.0) + reach(-1.0) - 1.0);
+            } else if depth > 2.0 * STEP {
+                break;
+            }
+            depth += STEP;
+        }
+        widest
+    }
+}
+
+/// Gives the free pixels under the bars to the regions beside them.
+pub fn fill_cuts(raster: &Raster, regions: &mut [u32]) {
+    let mut todo: Vec<usize> = (0..regions.len()).filter(|&pixel| raster.free[pixel] && regions[pixel] == 0).collect();
+    loop {
+        let beside = |&pixel: &usize| raster.sides(pixel).iter().map(|&b| regions[b]).find(|&region| region != 0);
+        let found: Vec<(usize, Option<u32>)> = todo.iter().map(|pixel| (*pixel, beside(pixel))).collect();
+        let mut rest = Vec::new();
+        for &(pixel, region) in &found {
+            match region {
+                Some(region) => regions[pixel] = region,
+                None => rest.push(pixel),
+            }
+        }
+        if rest.len() == todo.len() {
+            return;
+        }
+        todo = rest;
+    }
+}

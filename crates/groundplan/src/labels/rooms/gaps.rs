@@ -1,0 +1,180 @@
+//! Gaps in walls: where a line of the map is free between structure that lies along it.
+
+use super::super::Evidence;
+use super::raster::Raster;
+use crate::grid::angle_between;
+
+/// A straight closure of a gap, jamb to jamb, in the raster's places; both ends lie in free space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bar {
+    pub ends: [[f64; 2]; 2],
+}
+
+impl Bar {
+    /// Pixels.
+    pub fn length(&self) -> f64 {
+        let [p, q] = self.ends;
+        ((q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)).sqrt()
+    }
+
+    /// True when one of its jambs belongs to something solid that stands by itself.
+    pub fn is_at_solid(&self, raster: &Raster) -> bool {
+        let [ux, uy] = self.heading();
+        let jamb = |[x, y]: [f64; 2], way: f64| {
+            (1..=JAMB_PIXELS)
+                .filter_map(|n| raster.at([x + way * ux * f64::from(n), y + way * uy * f64::from(n)]))
+                .any(|pixel| raster.solid[pixel])
+        };
+        jamb(self.ends[0], -1.0) || jamb(self.ends[1], 1.0)
+    }
+
+    /// True when both ends are within a distance of the other's.
+    pub fn is_near(&self, other: &Self, distance: f64) -> bool {
+        let near = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2) <= distance * distance;
+        let ([a, b], [c, d]) = (self.ends, other.ends);
+        (near(a, c) && near(b, d)) || (near(a, d) && near(b, c))
+    }
+
+    /// Unit vector from the first end to the second.
+    pub fn heading(&self) -> [f64; 2] {
+        let [p, q] = self.ends;
+        let length = self.length().max(1e-9);
+        [(q[0] - p[0]) / length, (q[1] - p[1]) / length]
+    }
+}
+
+/// A line is blocked where something not free lies within so many metres of it, a pixel at least.
+const NEAR: f64 = 0.1;
+/// Narrower gaps are cracks, metres.
+const CRACK: f64 = 0.4;
+/// A wall goes on for at least so long, metres, on one side of the gap,
+const WALL: f64 = 0.5;
+/// and over so much of it, metres, from the gap on, edge pixels lie along the line for at least this share.
+const JAMB: f64 = 0.6;
+const LINED: f64 = 0.6;
+/// Edge pixels this near to a line lie on it: metres, and pixels at least.
+const ON_LINE: (f64, f64) = (0.12, 2.0);
+
+/// A jamb lies within so many pixels of a bar's end.
+const JAMB_PIXELS: i32 = 4;
+
+/// Gaps along every line of every direction, in the lines' order.
+pub fn along_lines(evidence: &Evidence, raster: &Raster) -> Vec<Bar> {
+    let frame = &evidence.grid.frame;
+    let mut bars = Vec::new();
+    for (direction, &angle) in evidence.directions.angles.iter().enumerate() {
+        let angle_on_grid = frame.angle_to_grid(angle);
+        let mut members: Vec<(f64, usize)> = (0..evidence.lines.len())
+            .filter(|&n| evidence.lines.directions[n] as usize == direction)
+            .map(|n| (frame.offset_to_grid(angle, evidence.lines.offsets[n]), n))
+            .collect();
+        members.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let offsets: Vec<f64> = members.into_iter().map(|(offset, _)| offset).collect();
+        let lined = lined(evidence, angle_on_grid, &offsets);
+        for (&offset, lined) in offsets.iter().zip(&lined) {
+            let line = Line::new(raster, angle_on_grid, offset);
+            line.gaps(lined, evidence.parameters.rooms_max_opening, &mut bars);
+        }
+    }
+    bars
+}
+
+/// For each line, the steps along it where edge pixels lie along it, ascending.
+fn lined(evidence: &Evidence, angle: f64, offsets: &[f64]) -> Vec<Vec<i64>> {
+    let (cos, sin) = (libm::cos(angle), libm::sin(angle));
+    let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
+    let near = (ON_LINE.0 / evidence.grid.frame.resolution).max(ON_LINE.1);
+    let mut steps: Vec<Vec<i64>> = vec![Vec::new(); offsets.len()];
+    for (pixel, &along) in evidence.gradients.pixels.iter().zip(&evidence.gradients.angles) {
+        if angle_between(f64::from(along), angle) > tolerance {
+            continue;
+        }
+        let [x, y] = pixel.map(|p| f64::from(p) + 0.5);
+        let (u, v) = (x * cos + y * sin, y * cos - x * sin);
+        let first = offsets.partition_point(|&offset| offset < v - near);
+        for (line, _) in offsets.iter().enumerate().skip(first).take_while(|(_, offset)| **offset <= v + near) {
+            steps[line].push(u.round() as i64);
+        }
+    }
+    for list in &mut steps {
+        list.sort_unstable();
+        list.dedup();
+    }
+    steps
+}
+
+/// One line, walked in steps of a pixel.
+struct Line<'a> {
+    raster: &'a Raster,
+    /// The raster's place at step 0, and a step.
+    origin: [f64; 2],
+    step: [f64; 2],
+}
+
+impl<'a> Line<'a> {
+    /// The line n.p = offset on the grid, in pixels, n normal to the angle.
+    fn new(raster: &'a Raster, angle: f64, offset: f64) -> Self {
+        let step = [libm::cos(angle), libm::sin(angle)];
+        let origin = raster.of_grid([-step[1] * offset, step[0] * offset]);
+        Self { raster, origin, step }
+    }
+
+    fn place(&self, step: i64) -> [f64; 2] {
+        [0, 1].map(|axis| self.origin[axis] + self.step[axis] * step as f64)
+    }
+
+    /// The steps that lie on the raster: from, to.
+    fn span(&self) -> (i64, i64) {
+        let size = [self.raster.width as f64, self.raster.height as f64];
+        let corners = [[0.0, 0.0], [size[0], 0.0], [0.0, size[1]], size];
+        let along = corners.map(|c| (c[0] - self.origin[0]) * self.step[0] + (c[1] - self.origin[1]) * self.step[1]);
+        let low = along.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = along.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        (low.floor() as i64, high.ceil() as i64 + 1)
+    }
+
+    /// Free all across the line's band; outside the raster nothing is.
+    fn is_free(&self, step: i64, near: i64) -> bool {
+        let [x, y] = self.place(step);
+        (-near..=near).all(|n| {
+            let place = [x - self.step[1] * n as f64, y + self.step[0] * n as f64];
+            self.raster.at(place).is_some_and(|pixel| self.raster.free[pixel])
+        })
+    }
+
+    fn gaps(&self, lined: &[i64], widest: f64, bars: &mut Vec<Bar>) {
+        let pixels = |metres: f64| self.raster.pixels(metres);
+        let near = pixels(NEAR).round().max(1.0) as i64;
+        let (from, to) = self.span();
+        let free: Vec<bool> = (from..to).map(|step| self.is_free(step, near)).collect();
+        let runs = runs(&free);
+        let jamb = pixels(JAMB).max(1.0) as i64;
+        let on_line = |from: i64, to: i64| {
+            (lined.partition_point(|&s| s < to) - lined.partition_point(|&s| s < from)) as f64 >= LINED * jamb as f64
+        };
+        for three in runs.windows(3) {
+            let [before, gap, after] = [three[0], three[1], three[2]].map(|(a, b)| (b - a) as f64);
+            let (start, end) = (three[1].0 as i64 + from, three[1].1 as i64 + from);
+            if free[three[1].0]
+                && (pixels(CRACK)..=pixels(widest)).contains(&gap)
+                && before.max(after) >= pixels(WALL)
+                && (on_line(start - jamb, start) || on_line(end, end + jamb))
+            {
+                bars.push(Bar { ends: [self.place(start), self.place(end - 1)] });
+            }
+        }
+    }
+}
+
+/// Runs of equal flags: from, to.
+fn runs(flags: &[bool]) -> Vec<(usize, usize)> {
+    let mut runs = Vec::new();
+    let mut from = 0;
+    for n in 1..=flags.len() {
+        if n == flags.len() || flags[n] != flags[from] {
+            runs.push((from, n));
+            from = n;
+        }
+    }
+    runs
+}

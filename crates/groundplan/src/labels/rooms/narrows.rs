@@ -1,0 +1,154 @@
+//! Narrows: where the free space is tighter than on both sides, whether or not a line leads there.
+
+use super::gaps::Bar;
+use super::raster::{Raster, Sets};
+
+/// A narrow is at most this share as wide as the tighter of the two places that it joins.
+const NARROW: f64 = 0.85;
+/// Narrower than this, metres, is a crack, wider is no opening.
+const WIDTHS: (f64, f64) = (0.3, 4.0);
+/// The pixels that a narrow lies between are within so many pixels of its clearance,
+const TOUCH: f64 = 1.6;
+/// and so far from side by side, as the cosine of the angle between them.
+const OPPOSITE: f64 = -0.3;
+
+/// Straight closures of all narrows, in the order of the places that they part.
+pub fn find(raster: &Raster, clearance: &[u32]) -> Vec<Bar> {
+    let basins = basins(raster, clearance);
+    let mut borders: Vec<(u32, u32, usize)> = Vec::new();
+    for pixel in (0..basins.len()).filter(|&pixel| basins[pixel] != 0) {
+        for beside in [pixel + 1, pixel + raster.width] {
+            let (a, b) = (basins[pixel], basins[beside]);
+            if b != 0 && a != b {
+                borders.push((a.min(b), a.max(b), if a < b { pixel } else { beside }));
+            }
+        }
+    }
+    borders.sort_unstable();
+    borders.dedup();
+    let widths = [WIDTHS.0, WIDTHS.1].map(|metres| raster.pixels(metres));
+    borders
+        .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
+        .flat_map(|border| openings(raster, clearance, border))
+        .filter(|&pixel| (widths[0]..=widths[1]).contains(&(2.0 * f64::from(clearance[pixel]).sqrt())))
+        .filter_map(|pixel| closure(raster, clearance, pixel))
+        .collect()
+}
+
+/// The basins of the clearance: places that a narrow parts from all others (watershed, with basins joined where the
+/// way between them is hardly tighter than the tighter of the two).
+fn basins(raster: &Raster, clearance: &[u32]) -> Vec<u32> {
+    let mut sets = Sets::new(1);
+    let mut tops = vec![0u32];
+    let mut basins = vec![0u32; raster.free.len()];
+    for pixel in by_clearance(raster, clearance) {
+        let mut here = 0;
+        for beside in raster.around(pixel) {
+            if basins[beside] == 0 {
+                continue;
+            }
+            let other = sets.of(basins[beside]);
+            if here == 0 || here == other {
+                here = other;
+                continue;
+            }
+            let rank = |set: u32| (tops[set as usize], u32::MAX - set);
+            let (wide, tight) = if rank(here) > rank(other) { (here, other) } else { (other, here) };
+            if f64::from(clearance[pixel]) >= NARROW * NARROW * f64::from(tops[tight as usize]) {
+                sets.join(wide, tight);
+            }
+            here = wide;
+        }
+        if here == 0 {
+            here = sets.add();
+            tops.push(clearance[pixel]);
+        }
+        basins[pixel] = here;
+    }
+    for basin in &mut basins {
+        *basin = sets.of(*basin);
+    }
+    basins
+}
+
+/// Free pixels from the widest place to the tightest (a counting sort).
+fn by_clearance(raster: &Raster, clearance: &[u32]) -> Vec<usize> {
+    let top = clearance.iter().copied().max().unwrap_or(0) as usize;
+    let mut starts = vec![0usize; top + 2];
+    let free = || (0..clearance.len()).filter(|&pixel| raster.free[pixel]);
+    free().for_each(|pixel| starts[top - clearance[pixel] as usize + 1] += 1);
+    for n in 1..starts.len() {
+        starts[n] += starts[n - 1];
+    }
+    let mut order = vec![0; starts[top + 1]];
+    for pixel in free() {
+        let start = &mut starts[top - clearance[pixel] as usize];
+        order[*start] = pixel;
+        *start += 1;
+    }
+    order
+}
+
+/// The widest pixel of each connected piece of the border between two basins.
+fn openings(raster: &Raster, clearance: &[u32], border: &[(u32, u32, usize)]) -> Vec<usize> {
+    let mut seen = vec![false; border.len()];
+    let mut found = Vec::new();
+    for first in 0..border.len() {
+        if seen[first] {
+            continue;
+        }
+        seen[first] = true;
+        let mut stack = vec![first];
+        let mut best = border[first].2;
+        while let Some(n) = stack.pop() {
+            let pixel = border[n].2;
+            if (clearance[pixel], usize::MAX - pixel) > (clearance[best], usize::MAX - best) {
+                best = pixel;
+            }
+            // A border may skip a pixel where it changes sides.
+            for dy in 0..5 {
+                let row = (pixel + dy * raster.width).wrapping_sub(2 * raster.width + 2);
+                let from = border.partition_point(|entry| entry.2 < row);
+                for (m, _) in border.iter().enumerate().skip(from).take_while(|(_, entry)| entry.2 < row + 5) {
+                    if !seen[m] {
+                        seen[m] = true;
+                        stack.push(m);
+                    }
+                }
+            }
+        }
+        found.push(best);
+    }
+    found
+}
+
+/// From the nearest pixel that is not free to the nearest one across.
+fn closure(raster: &Raster, clearance: &[u32], pixel: usize) -> Option<Bar> {
+    let reach = f64::from(clearance[pixel]).sqrt() + TOUCH;
+    let (cx, cy) = ((pixel % raster.width) as i64, (pixel / raster.width) as i64);
+    let span = reach.ceil() as i64;
+    let mut touched: Vec<(i64, i64, i64)> = Vec::new();
+    for y in (cy - span).max(0)..=(cy + span).min(raster.height as i64 - 1) {
+        for x in (cx - span).max(0)..=(cx + span).min(raster.width as i64 - 1) {
+            let squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
+            if squared as f64 <= reach * reach && !raster.free[y as usize * raster.width + x as usize] {
+                touched.push((squared, x, y));
+            }
+        }
+    }
+    touched.sort_unstable();
+    let &(squared, ax, ay) = touched.first()?;
+    let nearest = (squared as f64).sqrt();
+    let mut best: Option<(f64, [f64; 2])> = None;
+    for &(squared, x, y) in &touched {
+        let distance = (squared as f64).sqrt();
+        let cosine = ((ax - cx) * (x - cx) + (ay - cy) * (y - cy)) as f64 / (nearest * distance).max(1e-9);
+        let cost = cosine + 0.3 * (distance - nearest) / nearest.max(1.0);
+        if cosine < OPPOSITE && best.is_none_or(|(least, _)| cost < least) {
+            best = Some((cost, [x as f64, y as f64]));
+        }
+    }
+    let (p, q) = ([ax as f64, ay as f64], best?.1);
+    let [ux, uy] = Bar { ends: [p, q] }.heading();
+    Some(Bar { ends: [[p[0] + ux, p[1] + uy], [q[0] - ux, q[1] - uy]] })
+}

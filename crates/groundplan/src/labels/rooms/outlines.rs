@@ -1,0 +1,169 @@
+//! Outlines of regions: along the borders of their pixels, the same on both sides of a border, and simplified by less
+//! than what lies between two borders, so that no two outlines cross.
+
+use super::raster::Raster;
+use crate::labels::outline::area;
+
+/// A point of an outline, in half pixels of the raster.
+type Point = [i64; 2];
+
+/// Outlines are simplified by at most the root of this many squared half pixels, over the second number: 0.35 pixels.
+/// The middles of the sides of pixels that two borders run along are 0.7 pixels apart at least.
+const TOLERANCE: (i128, i128) = (49, 100);
+
+/// The rings around a region, in the grid's pixels: the outer one first, counter-clockwise, then its holes.
+pub fn rings(raster: &Raster, regions: &[u32], region: u32, pixels: &[usize]) -> Vec<Vec<[f64; 2]>> {
+    let tracer = Tracer { raster, regions, region };
+    let mut seen: std::collections::BTreeSet<(usize, u8)> = std::collections::BTreeSet::new();
+    let mut rings: Vec<Vec<[f64; 2]>> = Vec::new();
+    for &pixel in pixels {
+        for side in 0..4 {
+            if tracer.is_border((pixel, side)) && !seen.contains(&(pixel, side)) {
+                let ring = tracer.trace((pixel, side), &mut seen);
+                let ring: Vec<[f64; 2]> = simplify(&ring)
+                    .into_iter()
+                    .map(|[x, y]| raster.to_grid([x as f64 / 2.0, y as f64 / 2.0]))
+                    .collect();
+                if ring.len() >= 3 {
+                    rings.push(ring);
+                }
+            }
+        }
+    }
+    let outer = (0..rings.len()).max_by(|&a, &b| area(&rings[a]).total_cmp(&area(&rings[b])).then(b.cmp(&a)));
+    if let Some(outer) = outer {
+        rings.swap(0, outer);
+    }
+    rings
+}
+
+/// One region's border. A side of a pixel is (pixel, side), sides counted from below, counter-clockwise; it runs with
+/// the pixel on its left.
+struct Tracer<'a> {
+    raster: &'a Raster,
+    regions: &'a [u32],
+    region: u32,
+}
+
+/// A point of a ring, and whether three regions or more meet there.
+type Node = (Point, bool);
+
+impl Tracer<'_> {
+    fn beside(&self, pixel: usize, side: u8) -> usize {
+        match side {
+            0 => pixel - self.raster.width,
+            1 => pixel + 1,
+            2 => pixel + self.raster.width,
+            _ => pixel - 1,
+        }
+    }
+
+    fn is_border(&self, (pixel, side): (usize, u8)) -> bool {
+        self.regions[self.beside(pixel, side)] != self.region
+    }
+
+    /// The middle of a side, and the point where it ends.
+    fn points(&self, (pixel, side): (usize, u8)) -> [Point; 2] {
+        let (x, y) = (2 * (pixel % self.raster.width) as i64, 2 * (pixel / self.raster.width) as i64);
+        match side {
+            0 => [[x, y - 1], [x + 1, y - 1]],
+            1 => [[x + 1, y], [x + 1, y + 1]],
+            2 => [[x, y + 1], [x - 1, y + 1]],
+            _ => [[x - 1, y], [x - 1, y - 1]],
+        }
+    }
+
+    fn trace(&self, start: (usize, u8), seen: &mut std::collections::BTreeSet<(usize, u8)>) -> Vec<Node> {
+        let mut ring = Vec::new();
+        let mut at = start;
+        loop {
+            seen.insert(at);
+            let [middle, end] = self.points(at);
+            ring.push((middle, false));
+            let (pixel, side) = at;
+            // The pixels ahead: on the region's side, and on the other.
+            let turn = (side + 1) % 4;
+            let left = self.beside(pixel, turn);
+            let out = self.beside(pixel, side);
+            let right = self.beside(out, turn);
+            let [l, o, r] = [left, out, right].map(|p| self.regions[p]);
+            let here = self.region;
+            let (straight, turn_left, turn_right) = ((left, side), (pixel, turn), (right, (side + 3) % 4));
+            let (next, is_node) = match (l == here, r == here) {
+                (true, true) => (turn_right, false),
+                (true, false) => (straight, o != r),
+                // Where two labels touch corner to corner the lesser is joined and the greater parted; where one label
+                // touches itself between two others it is joined. So no ring comes to one point twice.
+                (false, true) => (if o == l && here > o { turn_left } else { turn_right }, false),
+                (false, false) => (turn_left, o != l),
+            };
+            if is_node {
+                ring.push((end, true));
+            }
+            at = next;
+            if at == start {
+                return ring;
+            }
+        }
+    }
+}
+
+/// Between points where three regions meet, a border is simplified the same from both its sides.
+fn simplify(ring: &[Node]) -> Vec<Point> {
+    let count = ring.len();
+    let mut fixed: Vec<usize> = (0..count).filter(|&n| ring[n].1).collect();
+    if fixed.is_empty() {
+        let first = (0..count).min_by_key(|&n| ring[n].0).unwrap_or(0);
+        let from = ring[first].0;
+        let farthest = (0..count).max_by_key(|&n| (squared(from, ring[n].0), ring[n].0)).unwrap_or(0);
+        fixed = vec![first.min(farthest), first.max(farthest)];
+        fixed.dedup();
+    }
+    let all: Vec<Point> = ring.iter().map(|node| node.0).collect();
+    let mut kept = Vec::new();
+    for (n, &from) in fixed.iter().enumerate() {
+        let to = fixed[(n + 1) % fixed.len()];
+        let length = (to + count - from - 1) % count + 1;
+        let chain: Vec<Point> = (0..=length).map(|k| all[(from + k) % count]).collect();
+        let mut keep = vec![false; chain.len()];
+        if chain[0] == chain[length] {
+            // A whole ring that hangs on one point.
+            let far = (0..=length).max_by_key(|&k| (squared(chain[0], chain[k]), chain[k])).unwrap_or(0);
+            keep[far] = true;
+            mark(&chain, 0, far, &mut keep);
+            mark(&chain, far, length, &mut keep);
+        } else {
+            mark(&chain, 0, length, &mut keep);
+        }
+        kept.push(chain[0]);
+        kept.extend((1..length).filter(|&k| keep[k]).map(|k| chain[k]));
+    }
+    kept
+}
+
+fn squared(p: Point, q: Point) -> i64 {
+    (p[0] - q[0]).pow(2) + (p[1] - q[1]).pow(2)
+}
+
+/// Douglas and Peucker (1973), in whole numbers; of points equally far the least is taken, so that the way along the
+/// chain does not matter.
+fn mark(chain: &[Point], from: usize, to: usize, keep: &mut [bool]) {
+    let mut stack = vec![(from, to)];
+    while let Some((from, to)) = stack.pop() {
+        if to < from + 2 {
+            continue;
+        }
+        let (p, q) = (chain[from], chain[to]);
+        let off = |n: usize| {
+            let r = chain[n];
+            ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])).unsigned_abs()
+        };
+        let Some(far) = (from + 1..to).max_by_key(|&n| (off(n), std::cmp::Reverse(chain[n]))) else { continue };
+        let (off, length) = (i128::from(off(far)), i128::from(squared(p, q)));
+        if off * off * TOLERANCE.1 > TOLERANCE.0 * length {
+            keep[far] = true;
+            stack.push((from, far));
+            stack.push((far, to));
+        }
+    }
+}
