@@ -73,3 +73,9 @@ fn straight(ring: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let kept: Vec<[f64; 2]> = kept.map(|n| ring[n]).collect();
     if kept.len() < 3 { ring } else { kept }
 }
+
+/// True when a counter-clockwise convex polygon holds the point.
+pub fn holds(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let next = polygon.iter().cycle().skip(1);
+    polygon.iter().zip(next).all(|(p, q)| (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) >= 0.0)
+}

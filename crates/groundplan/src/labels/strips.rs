@@ -6,13 +6,18 @@ use super::junctions::{self, Meeting};
 use super::names::{Named, names};
 use super::racks::{self, Row};
 use super::turned::Turned;
-use super::{Evidence, JunctionKind, Label, rooms};
+use super::{Evidence, JunctionKind, Label, outline, rooms};
 use crate::grid::{State, tidy};
 
 /// A corridor that meets no other is at least so many times as long as wide.
 const ALONE: f64 = 2.0;
 /// A corridor that meets one other goes on beyond it for so many times its width, or it is a niche at its side.
 const NICHE: f64 = 1.5;
+
+/// A place has racks when it has so many, and so many metres of them for a metre of corridor.
+const RACKS: (usize, f64) = (3, 0.22);
+/// So far round a rack there are no doors, metres.
+const RIM: f64 = 0.4;
 
 pub fn find(evidence: &Evidence) -> Vec<Label> {
     let views: Vec<Turned> = (0..evidence.directions.angles.len()).map(|d| Turned::new(evidence, d)).collect();
@@ -63,10 +68,46 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
             Label::Corridor { faces: faces.take(&polygon), polygon, axis, width: tidy(strip.width()), name }
         })
         .collect();
+    let ways = ways_along_racks(&views, &strips, &extents, &meetings, &rows);
     labels.extend(junctions);
     labels.extend(rack_labels(evidence, &views, &rows));
-    labels.extend(rooms::find(evidence, labels.len()));
+    labels.extend(rooms::find(evidence, labels.len(), &ways));
     labels
+}
+
+/// The corridors along racks and those that cross them, and the racks' own ground with a rim.
+fn ways_along_racks(
+    views: &[Turned],
+    strips: &[Strip],
+    extents: &[[f64; 2]],
+    meetings: &[Meeting],
+    rows: &[Row],
+) -> Vec<Vec<[f64; 2]>> {
+    // In an office what lies between two corridors is rooms: there are racks where there are several.
+    let length = |ends: &[f64; 2]| ends[1] - ends[0];
+    let racks: f64 = rows.iter().map(|row| length(&row.along)).sum();
+    let corridors: f64 = extents.iter().map(length).sum();
+    if rows.len() < RACKS.0 || racks < RACKS.1 * corridors {
+        return Vec::new();
+    }
+    let mut along: Vec<usize> = rows.iter().filter_map(|row| row.between).flatten().collect();
+    along.sort_unstable();
+    along.dedup();
+    let aisles = along.clone();
+    for meeting in meetings.iter().filter(|meeting| meeting.corridors.iter().any(|c| aisles.contains(c))) {
+        along.extend(&meeting.corridors);
+    }
+    along.sort_unstable();
+    along.dedup();
+    let corridors = along.into_iter().map(|n| {
+        let strip = &strips[n];
+        rectangle(&views[strip.direction], extents[n], strip.across)
+    });
+    let grounds = rows.iter().filter(|row| row.between.is_some()).map(|row| {
+        let wider = |[low, high]: [f64; 2]| [low - RIM, high + RIM];
+        rectangle(&views[row.direction], wider(row.along), wider(row.across))
+    });
+    corridors.chain(grounds).collect()
 }
 
 /// The ways, what they meet and where they end, and the rows between them.
@@ -194,14 +235,9 @@ impl<'a> Faces<'a> {
 
     /// Takes the faces whose centres lie in a convex polygon.
     fn take(&mut self, polygon: &[[f64; 2]]) -> Vec<u32> {
-        let (inside, outside) = self.left.iter().partition(|&&face| holds(polygon, self.centres[face as usize]));
+        let (inside, outside) =
+            self.left.iter().partition(|&&face| outline::holds(polygon, self.centres[face as usize]));
         self.left = outside;
         inside
     }
-}
-
-/// True when a counter-clockwise convex polygon holds the point.
-fn holds(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
-    let next = polygon.iter().cycle().skip(1);
-    polygon.iter().zip(next).all(|(p, q)| (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) >= 0.0)
 }

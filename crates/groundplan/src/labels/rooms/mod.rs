@@ -11,7 +11,7 @@ mod narrows;
 mod outlines;
 mod raster;
 
-use super::{Evidence, Label, Purpose};
+use super::{Evidence, Label, Purpose, outline};
 use crate::grid::{State, tidy};
 use cells::Rules;
 use gaps::Bar;
@@ -85,11 +85,17 @@ fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
     ((q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)).sqrt()
 }
 
-/// Regions, then the doors between them; `first` is the id of the first of these labels.
-pub fn find(evidence: &Evidence, first: usize) -> Vec<Label> {
+/// Regions, then the doors between them; `first` is the id of the first of these labels, and within `ways`, convex
+/// polygons in the map frame, there are no doors: they are ways along racks.
+pub fn find(evidence: &Evidence, first: usize, ways: &[Vec<[f64; 2]>]) -> Vec<Label> {
     let Some(raster) = Raster::new(evidence.grid) else { return Vec::new() };
     let clearance = raster.clearance();
-    let bars = bars(evidence, &raster, &clearance);
+    let mut bars = bars(evidence, &raster, &clearance);
+    bars.retain(|bar| {
+        let middle = [0, 1].map(|axis| f64::midpoint(bar.ends[0][axis], bar.ends[1][axis]));
+        let middle = evidence.grid.frame.to_metres(raster.to_grid(middle));
+        !ways.iter().any(|way| outline::holds(way, middle))
+    });
     let parameters = evidence.parameters;
     let rules = Rules { openness: parameters.rooms_openness, least_area: parameters.rooms_min_area };
     let mut cells = cells::find(&raster, &bars, &rules);
