@@ -16,8 +16,8 @@ const NEAR: (f64, f64) = (0.12, 2.0);
 const STRONG: (f64, f64) = (2.0, 0.08);
 
 /// Nothing gets through where more than this share is not free, or more than this is barred by a wall, be it thin.
-const IMPASSABLE: f64 = 0.8;
-const BARRED: f64 = 0.9;
+const IMPASSABLE: f64 = 0.7;
+const BARRED: f64 = 0.7;
 
 /// One direction's view of the map. Places along it (u) and across it (v) are metres in the map frame turned by the
 /// direction: u = p.t with t = (cos, sin), v = p.n with n = (-sin, cos).
