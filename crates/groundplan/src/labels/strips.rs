@@ -123,6 +123,12 @@ struct Plan {
 
 impl Plan {
     fn new(evidence: &Evidence, views: &[Turned], strips: Vec<Strip>) -> Self {
+        let (mut strips, meetings) = connected(views, strips);
+        // A corridor goes on to what it meets, and there it may be what another one meets.
+        let longer = extents(views, &strips, &meetings);
+        for (strip, along) in strips.iter_mut().zip(longer) {
+            strip.along = along;
+        }
         let (strips, meetings) = connected(views, strips);
         let mut extents = extents(views, &strips, &meetings);
         let ends = junctions::ends(views, &strips, &meetings);
