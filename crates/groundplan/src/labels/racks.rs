@@ -21,7 +21,7 @@ pub struct Row {
 }
 
 /// Two faces are this far apart, metres: less is a wall, more is a room.
-const DEPTH: (f64, f64) = (0.5, 3.6);
+pub const DEPTH: (f64, f64) = (0.5, 3.6);
 /// A row's piece is at least so long, metres.
 const SHORTEST: f64 = 1.2;
 /// Least share of a row that is taken.
@@ -30,7 +30,7 @@ const TAKEN: f64 = 0.12;
 const TAKEN_OUTSIDE: f64 = 0.5;
 const SEEN_OUTSIDE: f64 = 0.5;
 /// Sides nearer than this are the same, metres.
-const SAME: f64 = 0.3;
+pub const SAME: f64 = 0.3;
 
 /// The rows between the corridors and at the outer sides of them, the longest first.
 pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {

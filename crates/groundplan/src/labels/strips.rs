@@ -9,8 +9,8 @@ use super::turned::Turned;
 use super::{Evidence, JunctionKind, Label, outline, rooms};
 use crate::grid::{State, tidy};
 
-/// A corridor that meets no other is at least so many times as long as wide.
-const ALONE: f64 = 2.0;
+/// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
+const ALONE: (f64, f64) = (2.0, 5.0);
 /// A corridor that meets one other goes on beyond it for so many times its width, or it is a niche at its side.
 const NICHE: f64 = 1.5;
 
@@ -175,7 +175,8 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
             let reach = met.clone().map(|m| m.reach[usize::from(m.corridors[0] != n)]).sum::<f64>();
             let beyond = strips[n].length() - reach;
             match met.count() {
-                0 => strips[n].length() >= ALONE * strips[n].width(),
+                0 | 1 if within_row(&strips, n) => false,
+                0 => strips[n].length() >= ALONE.1.max(ALONE.0 * strips[n].width()),
                 1 => beyond >= NICHE * strips[n].width(),
                 _ => true,
             }
@@ -187,6 +188,18 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
         let mut flags = stays.into_iter();
         strips.retain(|_| flags.next().unwrap_or(false));
     }
+}
+
+/// True when a strip lies between two corridors that are no further apart than the faces of a rack.
+fn within_row(strips: &[Strip], n: usize) -> bool {
+    let own = &strips[n];
+    let beside = |other: &&Strip| {
+        let shared = other.along[1].min(own.along[1]) - other.along[0].max(own.along[0]);
+        other.direction == own.direction && shared > own.length() / 2.0
+    };
+    let below = strips.iter().filter(beside).map(|s| s.across[1]).filter(|v| *v <= own.across[0] + racks::SAME);
+    let above = strips.iter().filter(beside).map(|s| s.across[0]).filter(|v| *v >= own.across[1] - racks::SAME);
+    above.fold(f64::INFINITY, f64::min) - below.fold(f64::NEG_INFINITY, f64::max) <= racks::DEPTH.1
 }
 
 /// Where each corridor begins and ends, along: its walled part, and on to the middle of the junctions at its ends.
