@@ -11,6 +11,8 @@ use crate::grid::{State, tidy};
 
 /// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
 const ALONE: (f64, f64) = (2.0, 5.0);
+/// The corridors along a rack are so many times as long as a gap in it.
+const LONGER: f64 = 1.5;
 /// A corridor that meets one other goes on beyond it for so many times its width, or it is a niche at its side.
 const NICHE: f64 = 1.5;
 
@@ -190,12 +192,12 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
     }
 }
 
-/// True when a strip lies between two corridors that are no further apart than the faces of a rack.
+/// True when a strip lies between two much longer corridors that are no further apart than the faces of a rack.
 fn within_row(strips: &[Strip], n: usize) -> bool {
     let own = &strips[n];
     let beside = |other: &&Strip| {
         let shared = other.along[1].min(own.along[1]) - other.along[0].max(own.along[0]);
-        other.direction == own.direction && shared > own.length() / 2.0
+        other.direction == own.direction && shared > own.length() / 2.0 && other.length() > LONGER * own.length()
     };
     let below = strips.iter().filter(beside).map(|s| s.across[1]).filter(|v| *v <= own.across[0] + racks::SAME);
     let above = strips.iter().filter(beside).map(|s| s.across[0]).filter(|v| *v >= own.across[1] - racks::SAME);
