@@ -13,6 +13,7 @@ mod raster;
 
 use super::{Evidence, Label, Purpose, outline};
 use crate::grid::{State, tidy};
+use crate::subdivision::distance;
 use cells::Rules;
 use gaps::Bar;
 use raster::Raster;
@@ -79,10 +80,6 @@ impl Doorway {
             }
         }
     }
-}
-
-fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
-    ((q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)).sqrt()
 }
 
 /// Regions, then the doors between them; `first` is the id of the first of these labels, and within `ways`, convex
