@@ -289,6 +289,12 @@ class Survey(Stage):
             reading={} if source is None else checked_reading(source.get("reading", {})),
         )
 
+    def export(self, path: str | os.PathLike[str], format: str | None = None, **options: Any) -> list[Path]:
+        """Write the survey in the format of another program, such as ``dxf``; see `groundplan.export.export`."""
+        from groundplan.export import export
+
+        return export(self, path, format, **options)
+
     def to_networkx(self) -> networkx.Graph[int]:
         """The adjacency graph: faces as nodes, links as edges. Needs networkx.
 

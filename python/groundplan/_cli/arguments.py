@@ -15,6 +15,7 @@ from groundplan._errors import MapError
 COMMANDS = {
     "survey": "find the directions, walls, corridors and junctions of a map",
     "figures": "draw the paper's figures from a saved survey",
+    "export": "write a saved survey for CAD, fleets, warehouse systems and other programs",
     "simulate": "make a map of a place that never was, with its truth",
     "evaluate": "score a survey against a truth, or the method on a suite of simulated maps",
     "parameters": "list every parameter that survey takes by --set and --config",

@@ -49,14 +49,8 @@ def formats(text: str) -> tuple[str, ...]:
 def run(arguments: argparse.Namespace) -> None:
     """Draw the figures."""
     from groundplan.maps import read
-    from groundplan.survey import Survey
 
-    path = arguments.survey / "survey.json" if arguments.survey.is_dir() else arguments.survey
-    try:
-        survey = Survey.read(path)
-    except FormatError as fault:
-        named = fault if fault.code == "survey.read" else FormatError(fault.code, f"{path}: {fault}")
-        raise named from fault
+    path, survey = open_survey(arguments.survey)
     source = arguments.map if arguments.map is not None else find_map(survey, path)
     frame = {"resolution": survey.map.resolution, "origin": survey.map.origin}
     with terminal.status(arguments.quiet) as status:
@@ -71,6 +65,24 @@ def run(arguments: argparse.Namespace) -> None:
         )
     if not arguments.quiet:
         terminal.put("".join(f"{path}\n" for path in drawn))
+
+
+def open_survey(given: Path) -> tuple[Path, Survey]:
+    """A survey's file, given that or its directory, and what is in it; errors name the file.
+
+    Raises
+    ------
+    FormatError
+        As `Survey.read`.
+    """
+    from groundplan.survey import Survey
+
+    file = given / "survey.json" if given.is_dir() else given
+    try:
+        return file, Survey.read(file)
+    except FormatError as fault:
+        named = fault if fault.code == "survey.read" else FormatError(fault.code, f"{file}: {fault}")
+        raise named from fault
 
 
 def find_map(survey: Survey, path: Path) -> str:

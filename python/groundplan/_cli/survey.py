@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING, Any
 
 from groundplan._cli import terminal
 from groundplan._cli.arguments import add_reading, count, number, numbers, place, reading
+from groundplan._cli.export import formats
 
 if TYPE_CHECKING:
+    from groundplan.export import Format
     from groundplan.maps import Map
     from groundplan.survey import Survey
 
 
 def fill(own: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    own.usage = "groundplan survey MAP [-o DIR] [--figures] [--json] [flags]"
+    own.usage = "groundplan survey MAP [-o DIR] [--figures] [--export LIST] [flags]"
     own.epilog = (
         "Of the parameters, what a flag says beats the file, and the file beats the default; of several flags for one "
         "parameter the last counts. groundplan parameters lists them."
@@ -32,9 +34,16 @@ def fill(own: argparse.ArgumentParser) -> None:
     )
     own.add_argument("--figures", action="store_true", help="draw the paper's figures 2 to 9 into DIR/figures too")
     own.add_argument(
+        "--export",
+        metavar="LIST",
+        type=formats,
+        default=[],
+        help="write formats of other programs into DIR/export too; several with commas (groundplan export --list)",
+    )
+    own.add_argument(
         "--json",
         action="store_true",
-        help="print the survey instead of the summary, and write files only where -o or --figures asks for them",
+        help="print the survey instead of the summary, and write files only where -o, --figures or --export asks",
     )
     own.add_argument("-q", "--quiet", action="store_true", help="no summary, no warnings: only errors are told")
     own.add_argument("--threads", type=count, metavar="N", help="at most so many; any number gives the same survey")
@@ -118,8 +127,11 @@ def run(arguments: argparse.Namespace) -> None:
     import dataclasses
 
     import groundplan
+    from groundplan.export import prepare
 
     chosen, given = settings(arguments), reading(arguments)
+    for form in arguments.export:  # what is not installed is told before the work
+        prepare([form], {} if form.map == "no" else {"map": ...})
     origin = arguments.origin
     if origin is not None and len(origin) not in (2, 3):
         arguments.parser.error(f"--origin has {len(origin)} numbers; it takes 2 or 3: X Y [YAW]")
@@ -133,7 +145,7 @@ def run(arguments: argparse.Namespace) -> None:
         named = dataclasses.replace(found.map, image=printable(found.map.image))
         out = directory(arguments)
         found = dataclasses.replace(found, map=named, source=seen_from(out or Path(), arguments.map), reading=given)
-        written = [] if out is None else write(out, found, map, status, figures=arguments.figures)
+        written = [] if out is None else write(out, found, map, status, arguments.figures, arguments.export)
     if arguments.json:
         terminal.put(found.to_json())
     if not arguments.quiet:
@@ -174,7 +186,7 @@ def directory(arguments: argparse.Namespace) -> Path | None:
     """Where files go; None where none are asked for."""
     if arguments.out is not None:
         return Path(arguments.out)
-    if arguments.json and not arguments.figures:
+    if arguments.json and not arguments.figures and not arguments.export:
         return None
     return Path(f"{Path(arguments.map).stem}-survey")
 
@@ -191,8 +203,11 @@ def seen_from(out: Path, map: str) -> str:
     return printable(Path(relative).as_posix())
 
 
-def write(out: Path, survey: Survey, map: Map, status: terminal.Status, *, figures: bool) -> list[str]:
+def write(
+    out: Path, survey: Survey, map: Map, status: terminal.Status, figures: bool, forms: list[Format]
+) -> list[str]:
     """Write the files; the names of what was written."""
+    from groundplan._cli import export
     from groundplan._files import whole
     from groundplan.figures import draw_survey
 
@@ -208,4 +223,8 @@ def write(out: Path, survey: Survey, map: Map, status: terminal.Status, *, figur
         status("drawing the figures")
         drawn = draw_figures(survey, map, out / "figures", progress=lambda what: status(f"drawing {what}"))
         written.append(f"{out / 'figures'}{os.sep} ({len(drawn)} files)")
+    if forms:
+        written += [
+            str(file) for file in export.write(survey, forms, f"{out / 'export'}{os.sep}", {"map": map}, status)
+        ]
     return written

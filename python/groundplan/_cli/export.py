@@ -1,0 +1,151 @@
+"""groundplan export: a saved survey in the formats of other programs."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from groundplan._cli import terminal
+from groundplan._cli.arguments import add_reading, number, reading
+from groundplan.export import FORMATS, OPTIONS, Format, Option, format_named
+
+if TYPE_CHECKING:
+    from groundplan.survey import Survey
+
+
+def fill(own: argparse.ArgumentParser) -> None:
+    """Add the command's arguments."""
+    own.usage = "groundplan export SURVEY --to FORMAT[,FORMAT] [-o PATH] [flags]\n       groundplan export --list"
+    own.epilog = "The names of the files are printed."
+    own.add_argument("survey", metavar="SURVEY", type=Path, nargs="?", help="a survey.json, or the directory of one")
+    own.add_argument("--to", metavar="FORMAT", type=formats, help=f"{', '.join(FORMATS)}; several with commas, or all")
+    own.add_argument("--list", action="store_true", help="say of each format what it holds and who reads it")
+    own.add_argument(
+        "-o",
+        "--out",
+        metavar="PATH",
+        type=path,
+        help="the file, or a directory for files with the map's name (default: export, beside the survey)",
+    )
+    own.add_argument("--map", metavar="MAP", help="the surveyed map, for formats that show its pixels")
+    own.add_argument("-q", "--quiet", action="store_true", help="print no names: only errors are told")
+    add_options(own)
+    add_reading(own, frame=False)
+
+
+def add_options(own: argparse.ArgumentParser) -> None:
+    """A flag for each option of a format."""
+    group = own.add_argument_group("formats")
+    for name, option in OPTIONS.items():
+        takers = ", ".join(form.name for form in FORMATS.values() if name in form.options)
+        group.add_argument(
+            f"--{name.replace('_', '-')}",
+            dest=f"option_{name}",
+            metavar=option.metavar,
+            type=_type(option),
+            choices=option.choices or None,
+            help=f"{option.sentence} [{takers}]",
+        )
+
+
+def _type(option: Option) -> Any:
+    return {"number": number, "numbers": _listed}.get(option.kind, str)
+
+
+def _listed(text: str) -> list[float]:
+    return [number(part) for part in text.split(",")]
+
+
+def path(text: str) -> str:
+    """Where to write to; kept as typed, because a slash behind it says that it is a directory."""
+    if not text:
+        raise argparse.ArgumentTypeError("the path has no name")
+    return text
+
+
+def formats(text: str) -> list[Format]:
+    """Formats with commas, or all of them."""
+    from groundplan._errors import ParameterError
+
+    if text == "all":
+        return list(FORMATS.values())
+    try:
+        return [format_named(name) for name in dict.fromkeys(part.strip() for part in text.split(","))]
+    except ParameterError as fault:
+        raise argparse.ArgumentTypeError(f"{fault}; {fault.hint}") from fault
+
+
+def options(arguments: argparse.Namespace, forms: list[Format]) -> dict[str, Any]:
+    """The options that were typed, each taken by one of the formats at least."""
+    given = {name: getattr(arguments, f"option_{name}") for name in OPTIONS}
+    given = {name: value for name, value in given.items() if value is not None}
+    for name in given:
+        if not any(name in form.options for form in forms):
+            takers = ", ".join(form.name for form in FORMATS.values() if name in form.options)
+            arguments.parser.error(
+                f"--{name.replace('_', '-')} says nothing to the formats chosen", f"it is for {takers}"
+            )
+    return given
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Write a survey in other formats."""
+    if arguments.list:
+        terminal.put(listed())
+        return
+    if arguments.survey is None or arguments.to is None:
+        arguments.parser.error("a SURVEY and --to FORMAT are needed", "groundplan export --list")
+    from groundplan._cli.figures import open_survey
+
+    given = options(arguments, arguments.to)
+    file, survey = open_survey(arguments.survey)
+    with terminal.status(arguments.quiet) as status:
+        if arguments.map is not None or any(form.map == "must" for form in arguments.to):
+            given["map"] = _map(arguments, survey, file)
+        out = arguments.out or f"{file.parent / 'export'}{os.sep}"
+        written = write(survey, arguments.to, out, given, status)
+    if not arguments.quiet:
+        terminal.put("".join(f"{file}\n" for file in written))
+
+
+def _map(arguments: argparse.Namespace, survey: Survey, file: Path) -> Any:
+    from groundplan._cli.figures import agree, find_map
+    from groundplan.maps import read
+
+    source = arguments.map if arguments.map is not None else find_map(survey, file)
+    frame = {"resolution": survey.map.resolution, "origin": survey.map.origin}
+    map = read(source, **{**survey.reading, **reading(arguments), **frame})
+    agree(survey, map, file, source, arguments.quiet)
+    return map
+
+
+def write(
+    survey: Survey, forms: list[Format], out: str | Path, given: dict[str, Any], status: terminal.Status
+) -> list[Path]:
+    """Write the formats, each with the options that it takes; what can be refused is so before the first."""
+    from groundplan.export import export, prepare
+
+    own = [{k: v for k, v in given.items() if k in form.options or (k == "map" and form.map != "no")} for form in forms]
+    for form, mine in zip(forms, own, strict=True):
+        prepare([form], mine)
+    place = out if len(forms) == 1 else f"{out}{os.sep}"
+    written: list[Path] = []
+    for form, mine in zip(forms, own, strict=True):
+        status(f"writing {form.name}")
+        written += export(survey, place, form, **mine)
+    return written
+
+
+def listed() -> str:
+    """A paragraph for each format."""
+    rows = []
+    for form in FORMATS.values():
+        rows.append((form.name, form.holds))
+        rows.append(("", f"for {form.readers}"))
+        told = [f"--{name.replace('_', '-')}" for name in form.options] + ["--map"] * (form.map != "no")
+        rows.append(("", f"NAME{form.suffix}{'; takes ' if told else ''}{', '.join(told)}"))
+        if form.extra:
+            rows.append(("", f"needs pip install 'groundplan[{form.extra}]'"))
+    return "\n".join(terminal.columns(rows)) + "\n"

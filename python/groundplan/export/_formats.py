@@ -1,0 +1,132 @@
+"""The one table of formats and the one of their options: what the command line, `Survey.export` and the list go by.
+
+Nothing heavy is imported here: the list and ``--help`` answer at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from groundplan._errors import ParameterError
+
+
+@dataclass(frozen=True)
+class Format:
+    """One format. Its module is `groundplan.export.NAME`, with ``write(survey, path, **options) -> list[Path]``.
+
+    Attributes
+    ----------
+    name : str
+        What ``--to`` takes; the module's name, dashes there being underscores.
+    suffix : str
+        What the file's name ends in; the map's name comes before it. Where a format is several files, this is the
+        one that names the others, which lie beside it and have its name up to the suffix.
+    holds : str
+        What is in it.
+    readers : str
+        Who reads it.
+    options : tuple of str
+        Names from OPTIONS that its ``write`` takes.
+    needs : tuple of str
+        Modules that it imports, none of them a core dependency.
+    extra : str or None
+        The extra that installs them.
+    map : str
+        ``no``; ``may`` use the map's pixels where they are given (``write(..., map=None)``); ``must`` have them.
+    """
+
+    name: str
+    suffix: str
+    holds: str
+    readers: str
+    options: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
+    extra: str | None = None
+    map: str = "no"
+
+
+@dataclass(frozen=True)
+class Option:
+    """What a format can be told. `kind`: ``text``, ``number`` (positive), ``numbers`` (with commas), ``file`` or
+    ``choice`` of `choices`.
+    """  # noqa: D205
+
+    sentence: str
+    metavar: str
+    kind: str = "text"
+    choices: tuple[str, ...] = ()
+
+
+#: Options by name; the flag has dashes for the underscores.
+OPTIONS: dict[str, Option] = {
+    "graph": Option(
+        "the graph to write: places (default) or faces, the cells of the subdivision",
+        "WHICH",
+        "choice",
+        ("places", "faces"),
+    ),
+}
+
+FORMATS: dict[str, Format] = {
+    form.name: form
+    for form in (
+        Format(
+            "csv",
+            ".places.csv",
+            "a table of places: name, kind, polygon as WKT, centre, width, neighbours",
+            "warehouse management systems, spreadsheets, QGIS as delimited text",
+            needs=("shapely",),
+            extra="fleet",
+        ),
+        Format(
+            "graphml",
+            ".graphml",
+            "the graph of places, or of faces, as GraphML",
+            "networkx, Gephi, yEd, Cytoscape, igraph",
+            options=("graph",),
+            needs=("networkx", "shapely"),
+            extra="fleet",
+        ),
+        Format(
+            "json",
+            ".graph.json",
+            "the graph of places, or of faces, as node-link JSON",
+            "networkx, D3, any program",
+            options=("graph",),
+            needs=("networkx", "shapely"),
+            extra="fleet",
+        ),
+    )
+}
+
+
+def format_named(name: str) -> Format:
+    """The format of a name.
+
+    Raises
+    ------
+    ParameterError
+        ``export.format``.
+    """
+    if name not in FORMATS:
+        from groundplan._cli.arguments import nearest
+
+        near = nearest(name, FORMATS)
+        hint = f"did you mean {near}?" if near else "groundplan export --list"
+        raise ParameterError("export.format", f"there is no format {name!r}", hint)
+    return FORMATS[name]
+
+
+def format_of(file: str) -> Format:
+    """The format whose suffix a file's name ends in; of several the longest.
+
+    Raises
+    ------
+    ParameterError
+        ``export.format``.
+    """
+    fitting = [form for form in FORMATS.values() if file.lower().endswith(form.suffix)]
+    if not fitting:
+        endings = ", ".join(form.suffix for form in FORMATS.values())
+        raise ParameterError("export.format", f"the name {file!r} tells no format", f"name one, or end it in {endings}")
+    return max(fitting, key=lambda form: len(form.suffix))

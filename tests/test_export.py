@@ -1,0 +1,177 @@
+"""Exporting: one table says what there is, a path is a file or a directory, and nothing is left half-written."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from _exports import GOOD, ODD, demo, same_twice
+from _program import call, files, write_map
+
+import groundplan
+from groundplan import GroundplanError, ParameterError
+from groundplan.export import FORMATS, OPTIONS, export
+from groundplan.export._dates import moment
+
+
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The example warehouse's survey in a file."""
+    file = tmp_path_factory.mktemp("saved") / "survey.json"
+    demo().write(file)
+    return file
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_format_has_a_test_that_reads_it_back(name: str) -> None:
+    assert (Path(__file__).parent / f"test_export_{name.replace('-', '_')}.py").is_file()
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_format_says_who_reads_it_and_takes_options_that_there_are(name: str) -> None:
+    form = FORMATS[name]
+    assert form.readers and form.holds and form.suffix.startswith(".") and set(form.options) <= set(OPTIONS)
+    assert (form.extra is None) == (not form.needs) and form.map in ("no", "may", "must")
+
+
+def test_every_option_is_some_format_s() -> None:
+    assert {option for form in FORMATS.values() for option in form.options} == set(OPTIONS)
+
+
+def test_no_two_formats_have_the_same_file() -> None:
+    assert len({form.suffix for form in FORMATS.values()}) == len(FORMATS)
+
+
+WITHOUT_MAP = [name for name, form in FORMATS.items() if form.map != "must"]
+
+
+@pytest.mark.parametrize("which", ODD)
+@pytest.mark.parametrize("name", WITHOUT_MAP)
+def test_an_odd_survey_is_written_whole_or_refused_in_clear_words(name: str, which: str, tmp_path: Path) -> None:
+    try:
+        written = ODD[which]().export(tmp_path / "out", name)
+    except GroundplanError as fault:
+        assert fault.code.startswith("export.") and str(fault)
+        assert files(tmp_path) == set()
+    else:
+        assert {str(file.relative_to(tmp_path)) for file in written} == files(tmp_path)
+        assert all(file.stat().st_size for file in written)
+
+
+@pytest.mark.parametrize("name", WITHOUT_MAP)
+def test_exporting_twice_gives_the_same_bytes(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1777593600")
+    assert same_twice(demo(), name, tmp_path)
+
+
+def test_a_path_is_a_file_or_a_directory(tmp_path: Path) -> None:
+    there = tmp_path / "there"
+    there.mkdir()
+    for path, expected in (
+        (tmp_path / "plan.csv", "plan.csv"),
+        (tmp_path / "deep" / "plan.csv", "deep/plan.csv"),
+        (there, "there/warehouse.places.csv"),
+        (tmp_path / "new", "new/warehouse.places.csv"),
+        (f"{tmp_path / 'v1.2'}{os.sep}", "v1.2/warehouse.places.csv"),
+    ):
+        assert export(demo(), path, "csv") == [tmp_path / expected]
+        assert (tmp_path / expected).is_file()
+
+
+def test_a_format_may_be_told_by_the_name_s_end(tmp_path: Path) -> None:
+    assert demo().export(tmp_path / "x.GRAPHML")[0].read_bytes().startswith(b"<?xml")
+    with pytest.raises(ParameterError, match=r"the name 'x\.xyz' tells no format") as told:
+        demo().export(tmp_path / "x.xyz")
+    assert told.value.code == "export.format" and ".graphml" in str(told.value.hint)
+
+
+def test_what_cannot_be_done_is_refused_before_anything_is_written(tmp_path: Path) -> None:
+    for format, options, code in (
+        ("cvs", {}, "export.format"),
+        ("csv", {"units": "mm"}, "export.option"),
+        ("graphml", {"graph": "trees"}, "export.graph"),
+    ):
+        with pytest.raises(ParameterError) as told:
+            demo().export(tmp_path / "out", format, **options)
+        assert told.value.code == code
+    assert files(tmp_path) == set()
+
+
+def test_a_place_that_cannot_be_written_is_told(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(groundplan.FormatError, match="cannot write"):
+        demo().export(tmp_path / "file" / "x.csv", "csv")
+
+
+def test_a_missing_library_is_named_with_the_command_that_installs_it(
+    saved: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "networkx", None)
+    ran = call(capsys, "export", saved, "--to", "csv,graphml")
+    assert ran.code == 2 and "networkx is not installed" in ran.err and "pip install 'groundplan[fleet]'" in ran.err
+    assert not (saved.parent / "export").exists()
+
+
+def test_the_program_writes_several_formats_beside_the_survey_and_prints_their_names(
+    saved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out.d"
+    ran = call(capsys, "export", saved.parent, "--to", "csv,json,csv", "-o", out)
+    assert (ran.code, ran.err) == (0, "")
+    assert ran.out.split() == [str(out / "warehouse.places.csv"), str(out / "warehouse.graph.json")]
+    beside = call(capsys, "export", saved, "--to", "csv", "-q")
+    assert beside.out == "" and (saved.parent / "export" / "warehouse.places.csv").is_file()
+
+
+def test_the_program_lists_every_format(capsys: pytest.CaptureFixture[str]) -> None:
+    ran = call(capsys, "export", "--list")
+    assert ran.code == 0
+    for form in FORMATS.values():
+        assert f"\n{form.name} " in f"\n{ran.out}" and form.readers in ran.out
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--to", "cvs"], "did you mean csv?"),
+        (["--to", "csv", "--graph", "faces"], "--graph says nothing"),
+        ([], "--to FORMAT are needed"),
+    ],
+)
+def test_the_program_refuses_what_it_cannot_do(
+    saved: Path, words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ran = call(capsys, "export", saved, *words)
+    assert ran.code == 2 and said in ran.err and ran.out == ""
+
+
+def test_a_survey_is_exported_as_it_is_made(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    ran = call(capsys, "survey", write_map(tmp_path), "-o", tmp_path / "out", "--export", "csv,graphml")
+    assert ran.code == 0 and "hall.graphml" in ran.err
+    assert (tmp_path / "out" / "export" / "hall.places.csv").is_file()
+    later = call(capsys, "export", tmp_path / "out", "--to", "csv", "-o", tmp_path / "later.csv")
+    assert later.code == 0
+    assert (tmp_path / "later.csv").read_bytes() == (tmp_path / "out" / "export" / "hall.places.csv").read_bytes()
+
+
+def test_the_list_of_formats_loads_no_format() -> None:
+    code = "import sys, groundplan.export; print({'numpy', 'shapely', 'networkx', 'ezdxf'} & set(sys.modules))"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "set()"
+
+
+def test_a_date_is_what_is_given_or_the_build_s_or_now(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert moment("2026-05-01T09:30:00+02:00").isoformat() == "2026-05-01T07:30:00+00:00"
+    assert moment("2026-05-01").isoformat() == "2026-05-01T00:00:00+00:00"
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    assert moment(None).year == 1970
+    monkeypatch.delenv("SOURCE_DATE_EPOCH")
+    assert moment(None).year > 2025
+    with pytest.raises(ParameterError, match="'soon' is no date"):
+        moment("soon")
+
+
+def test_the_good_surveys_have_places() -> None:
+    assert all(make().labels for name, make in GOOD.items() if name != "jones farms")

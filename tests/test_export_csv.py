@@ -1,0 +1,53 @@
+"""The table of places, read by Python's csv and shapely's WKT."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+import shapely
+from _exports import GOOD, NAMES, demo, odd_names, once
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    """The table's rows by the names of its columns."""
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file, strict=True))
+
+
+@pytest.mark.parametrize("which", GOOD)
+def test_every_label_is_a_row_with_its_shape_to_a_millimetre(which: str, tmp_path: Path) -> None:
+    survey = GOOD[which]()
+    table = rows(once(survey, "csv", tmp_path))
+    assert [row["kind"] for row in table] == [label["kind"] for label in survey.labels]
+    assert len({row["id"] for row in table}) == len(table)
+    for row, label in zip(table, survey.labels, strict=True):
+        assert row["name"] == label.get("name", row["name"])
+        if row["kind"] == "region":
+            assert shapely.from_wkt(row["polygon"]).area == pytest.approx(float(row["area"]), rel=1e-3)
+        elif "polygon" in label:
+            given, read = shapely.Polygon(label["polygon"]), shapely.from_wkt(row["polygon"])
+            assert read.is_valid and shapely.hausdorff_distance(given, read) < 1e-3
+        if "at" in label:
+            assert (float(row["x"]), float(row["y"])) == pytest.approx(label["at"], abs=1e-3)
+        if "width" in label:
+            assert float(row["width"]) == pytest.approx(label["width"], abs=1e-3)
+
+
+def test_neighbours_know_each_other_and_an_aisle_knows_its_junctions_and_racks(tmp_path: Path) -> None:
+    by_id = {row["id"]: row for row in rows(once(demo(), "csv", tmp_path))}
+    for row in by_id.values():
+        for other in filter(None, row["neighbours"].split(";")):
+            assert row["id"] in by_id[other]["neighbours"].split(";")
+    assert by_id["A02"]["neighbours"] == "J04;J05;J06;S01;S03;S02;S04"
+    assert by_id["A02"]["region"] == "R01"
+
+
+def test_names_come_back_in_one_line(tmp_path: Path) -> None:
+    table = rows(once(odd_names(), "csv", tmp_path))
+    names = [row["name"] for row in table]
+    assert names[:5] == ['The "big" one', "O'Brien & <Söhne>, 50 %", "Gang Ä; Ölüm", "冷蔵庫 🚜", "two lines and tabs"]
+    assert names[10] == "null and bell" and names[11] == "half letter"
+    assert len({row["id"] for row in table}) == len(table)
+    assert [row["id"] for row in table[7:9]] == ["same", "same-2"] and len(NAMES) > 8
