@@ -158,3 +158,18 @@ def test_the_border_is_not_occupied(name: str) -> None:
     survey = zoo.surveyed(name)
     assert (survey.occupancy.edges[survey.subdivision.edge_lines < 0] == 0).all()
     assert ((survey.occupancy.edges >= 0) & (survey.occupancy.edges <= 1)).all()
+
+
+@pytest.mark.parametrize("name", ZOO)
+def test_an_edge_is_occupied_by_its_runs(name: str) -> None:
+    survey = zoo.surveyed(name)
+    cut, found = survey.subdivision, survey.occupancy
+    lengths = np.hypot(*(cut.vertices[cut.edge_vertices[:, 1]] - cut.vertices[cut.edge_vertices[:, 0]]).T)
+    assert len(found.run_offsets) == len(lengths) + 1
+    assert found.run_offsets[-1] == len(found.runs)
+    for edge, length in enumerate(lengths):
+        runs = found.runs[found.run_offsets[edge] : found.run_offsets[edge + 1]]
+        assert (np.diff(runs.ravel()) >= 0).all()
+        assert ((runs >= 0) & (runs <= length + 1e-5)).all()
+        # O(edge) counts whole pixels.
+        assert np.diff(runs).sum() == pytest.approx(found.edges[edge] * length, abs=1.01 * RESOLUTION)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -58,8 +59,77 @@ def test_a_wall_of_two_kinds_is_two_walls() -> None:
     upper = survey.walls.lines == 1
     assert survey.walls.freestanding[upper].tolist() == [False, True]
     assert survey.walls.points.reshape(-1, 4)[upper] / RESOLUTION == pytest.approx(
-        np.array([[20, 49.5, 80, 49.5], [80, 49.5, 140, 49.5]])
+        np.array([[20, 49.5, 80, 49.5], [80, 49.5, 140, 49.5]]), abs=1.1
     )
+
+
+def spans(picture: zoo.Picture, across: Sequence[float], **parameters: Any) -> list[list[float]]:
+    """From and to, in pixels, of the walls along y = 50; lines cross that one at each of `across`."""
+    directions = groundplan.Directions.of([0.0, -np.pi / 2])
+    lines = groundplan.Lines.of([0] + [1] * len(across), RESOLUTION * np.array([50.0, *across]))
+    survey = groundplan.survey(picture, resolution=RESOLUTION, directions=directions, lines=lines, **parameters)
+    along = survey.walls.points.reshape(-1, 2, 2)[survey.walls.lines == 0] / RESOLUTION
+    assert along[:, :, 1] == pytest.approx(50.0, abs=1e-3)
+    ends: list[list[float]] = np.sort(along[:, :, 0], axis=1).tolist()
+    return sorted(ends)
+
+
+def wall(*pieces: tuple[int, int]) -> zoo.Picture:
+    """Free space with pieces of one wall, from and to."""
+    plan = Canvas(240, 100, zoo.FREE)
+    for start, end in pieces:
+        plan.box(start, 49, end, 52)
+    return plan.picture
+
+
+def test_a_wall_ends_where_its_structure_ends() -> None:
+    # Between lines on either side it takes 120 of 200 pixels.
+    assert spans(wall((60, 180)), (20.0, 220.0)) == [pytest.approx([60, 180], abs=1.5)]
+
+
+def test_a_wall_goes_on_where_little_of_it_lies_on_the_next_edge() -> None:
+    # Beyond x = 150 it takes 30 of 70 pixels, and that edge is not cogent.
+    assert spans(wall((60, 180)), (20.0, 150.0, 220.0)) == [pytest.approx([60, 180], abs=1.5)]
+
+
+def test_a_door_is_open_be_it_in_the_middle_of_an_edge() -> None:
+    door = spans(wall((30, 100), (118, 210)), (20.0, 220.0))
+    assert door == [pytest.approx([30, 100], abs=1.5), pytest.approx([118, 210], abs=1.5)]
+
+
+def test_a_crack_is_no_opening_and_what_is_one_the_caller_says() -> None:
+    cracked = wall((30, 100), (106, 210))
+    assert spans(cracked, (20.0, 220.0)) == [pytest.approx([30, 210], abs=1.5)]
+    assert len(spans(cracked, (20.0, 220.0), walls_min_opening=0.1)) == 2
+    door = wall((30, 100), (118, 210))
+    assert spans(door, (20.0, 220.0), walls_min_opening=1.0) == [pytest.approx([30, 210], abs=1.5)]
+
+
+def test_a_scrap_beside_a_wall_does_not_lengthen_it() -> None:
+    assert spans(wall((60, 180), (186, 188)), (20.0, 220.0)) == [pytest.approx([60, 180], abs=1.5)]
+
+
+def test_a_door_is_open_in_the_zoo() -> None:
+    survey = zoo.surveyed("two_rooms_with_door")
+    ends = survey.walls.points.reshape(-1, 2, 2) / RESOLUTION
+    upright = ends[np.abs(ends[:, 0, 0] - ends[:, 1, 0]) < 1]
+    between = np.sort(upright[np.abs(upright[:, 0, 0] - 80.5) < 3][:, :, 1], axis=1)
+    # The door is from y = 30 to 46.
+    assert len(between) >= 2
+    assert ((between[:, 1] < 32) | (between[:, 0] > 44)).all()
+
+
+def test_the_walls_of_a_room_close() -> None:
+    points = zoo.surveyed("single_room").walls.points
+    assert len(np.unique(points, axis=0)) == 4
+
+
+@pytest.mark.parametrize("name", ["single_room", "turned_warehouse", "l_corridor"])
+def test_no_two_walls_end_just_beside_each_other(name: str) -> None:
+    walls = zoo.surveyed(name).walls
+    gaps = np.linalg.norm(walls.points[:, None] - walls.points[None], axis=2)
+    lines = walls.lines.repeat(2)
+    assert not ((lines[:, None] != lines) & (gaps > 1e-6) & (gaps < 3 * RESOLUTION)).any()
 
 
 def test_the_frontier_of_the_unknown_is_no_wall() -> None:

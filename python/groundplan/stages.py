@@ -239,6 +239,10 @@ class Occupancy(Stage):
         0 free, 1 occupied, 2 unknown.
     edges : (E,) float64
         Share of the edge's length on which occupied pixels lie; 0 on the border.
+    runs : (R, 2) float64
+        Where on the edges they lie: from, to, metres from the edge's first vertex.
+    run_offsets : (E + 1,) uint32
+        Edge e has the runs from ``run_offsets[e]`` to ``run_offsets[e + 1]``.
     """
 
     faces: Floats
@@ -247,6 +251,8 @@ class Occupancy(Stage):
     pixels: npt.NDArray[np.uint64]
     states: npt.NDArray[np.uint8]
     edges: Floats
+    runs: Floats
+    run_offsets: Ids
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -260,7 +266,7 @@ class Walls(Stage):
     disparity : (E,) float64
         |O(f1) - O(f2)|.
     points : (2 W, 2) float64
-        Two ends of each wall.
+        Two ends of each wall, where its structure begins and ends.
     lines : (W,) uint32
     freestanding : (W,) bool
         Else separating.

@@ -6,6 +6,7 @@ import json
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -124,8 +125,7 @@ class Survey(Stage):
     def to_dict(self) -> dict[str, Any]:
         """The survey as the format has it: plain lists and numbers."""
         cut, dual = self.subdivision, self.adjacency
-        ragged = np.split(cut.face_vertices, cut.face_offsets[1:-1]), np.split(cut.face_edges, cut.face_offsets[1:-1])
-        faces = [[part.tolist() for part in parts[: len(cut.areas)]] for parts in ragged]
+        faces = [ragged(part, cut.face_offsets) for part in (cut.face_vertices, cut.face_edges)]
         lines = [None if line < 0 else line for line in cut.edge_lines.tolist()]
         sides = [[None if f < 0 else f for f in pair] for pair in cut.edge_faces.tolist()]
         kinds = ["freestanding" if free else "separating" for free in self.walls.freestanding.tolist()]
@@ -149,6 +149,7 @@ class Survey(Stage):
                 line=lines,
                 faces=sides,
                 occupancy=self.occupancy.edges,
+                runs=ragged(self.occupancy.runs, self.occupancy.run_offsets),
                 disparity=self.walls.disparity,
                 cogent=self.walls.cogent,
             ),
@@ -228,7 +229,7 @@ class Survey(Stage):
         x, y, yaw = (float(value) for value in frame["origin"])
         width, height = int(frame["width"]), int(frame["height"])
         info = MapInfo(str(frame["image"]), width, height, float(frame["resolution"]), (x, y, yaw))
-        offsets = np.cumsum([0, *(len(face["vertices"]) for face in faces)], dtype=np.uint32)
+        sides, runs = ([len(entry[part]) for entry in of] for of, part in ((faces, "vertices"), (edges, "runs")))
         return cls(
             map=info,
             parameters=tree["parameters"],
@@ -258,7 +259,7 @@ class Survey(Stage):
                 ).reshape(-1, 2),
                 face_vertices=np.array([v for face in faces for v in face["vertices"]], dtype=np.uint32),
                 face_edges=np.array([e for face in faces for e in face["edges"]], dtype=np.uint32),
-                face_offsets=offsets,
+                face_offsets=np.cumsum([0, *sides], dtype=np.uint32),
                 centres=column(faces, "centre", np.float64).reshape(-1, 2),
                 areas=column(faces, "area", np.float64),
                 map_area=info.width * info.height * info.resolution**2,
@@ -270,6 +271,8 @@ class Survey(Stage):
                 pixels=column(faces, "pixels", np.uint64),
                 states=np.array([STATES.index(face["state"]) for face in faces], dtype=np.uint8),
                 edges=column(edges, "occupancy", np.float64),
+                runs=np.array([run for edge in edges for run in edge["runs"]], dtype=np.float64).reshape(-1, 2),
+                run_offsets=np.cumsum([0, *runs], dtype=np.uint32),
             ),
             walls=Walls(
                 cogent=column(edges, "cogent", np.bool_),
@@ -415,6 +418,12 @@ def rows(**columns: Any) -> list[dict[str, Any]]:
     """Columns as a list of records."""
     lists = [column.tolist() if isinstance(column, np.ndarray) else column for column in columns.values()]
     return [dict(zip(columns, values, strict=True)) for values in zip(*lists, strict=True)]
+
+
+def ragged(values: npt.NDArray[Any], offsets: npt.NDArray[Any]) -> list[Any]:
+    """Lists of different lengths from their values and offsets."""
+    flat, ends = values.tolist(), offsets.tolist()
+    return [flat[start:end] for start, end in pairwise(ends)]
 
 
 def column(records: list[dict[str, Any]], name: str, kind: npt.DTypeLike) -> npt.NDArray[Any]:

@@ -337,6 +337,8 @@ pub fn from_occupancy<'py>(py: Python<'py>, made: &Occupancy) -> PyResult<Bound<
         .list("pixels", made.pixels.clone())?
         .list("states", made.states.iter().map(|s| *s as u8).collect())?
         .list("edges", made.edges.clone())?
+        .pairs("runs", &made.runs)?
+        .list("run_offsets", made.run_offsets.clone())?
         .done())
 }
 
@@ -347,14 +349,21 @@ pub fn occupancy(dict: &Bound<'_, PyDict>) -> PyResult<Occupancy> {
         1 => State::Occupied,
         _ => State::Unknown,
     };
-    Ok(Occupancy {
+    let made = Occupancy {
         faces: list(dict, "faces")?,
         unknown: list(dict, "unknown")?,
         free: list(dict, "free")?,
         pixels: list(dict, "pixels")?,
         states: states.into_iter().map(state).collect(),
         edges: list(dict, "edges")?,
-    })
+        runs: pairs(dict, "runs")?,
+        run_offsets: list(dict, "run_offsets")?,
+    };
+    demand(made.run_offsets.len() == made.edges.len() + 1, "the runs are not those of these edges")?;
+    demand(made.run_offsets.is_sorted(), "the offsets of the runs do not rise")?;
+    let last = made.run_offsets.last().map_or(0, |&n| n as usize);
+    demand(last <= made.runs.len(), "the offsets of the runs go beyond them")?;
+    Ok(made)
 }
 
 pub fn from_walls<'py>(py: Python<'py>, made: &Walls) -> PyResult<Bound<'py, PyDict>> {

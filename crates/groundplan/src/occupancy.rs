@@ -25,6 +25,18 @@ pub struct Occupancy {
     pub states: Vec<State>,
     /// O(edge): share of the edge's length on which occupied pixels lie, 0 to 1; nothing on the border.
     pub edges: Vec<f64>,
+    /// Where on the edges they lie: from, to, metres from the edge's first vertex, in the edges' order and along each.
+    pub runs: Vec<[f64; 2]>,
+    /// Edge e has the runs from `run_offsets[e]` to `run_offsets[e + 1]`.
+    pub run_offsets: Vec<u32>,
+}
+
+impl Occupancy {
+    /// The parts of an edge on which occupied pixels lie: from, to, metres from its first vertex.
+    #[must_use]
+    pub fn runs_of(&self, edge: usize) -> &[[f64; 2]] {
+        &self.runs[self.run_offsets[edge] as usize..self.run_offsets[edge + 1] as usize]
+    }
 }
 
 /// A face is occupied when its average occupancy exceeds this and it is not mostly unknown.
@@ -75,13 +87,16 @@ pub fn find_occupancy(
             State::Free
         }
     };
+    let covered = cover_edges(grid, arrangement, directions, lines, gradients, parameters);
     Occupancy {
         states: faces.iter().zip(&unknown).map(state).collect(),
         faces,
         unknown,
         free: evidence.iter().map(|s| share(s.free, s.pixels)).collect(),
         pixels: sums.iter().map(|s| s.pixels.unsigned_abs()).collect(),
-        edges: edge_occupancy(grid, arrangement, directions, lines, gradients, parameters),
+        edges: covered.shares,
+        runs: covered.runs,
+        run_offsets: covered.offsets,
     }
 }
 
@@ -229,18 +244,26 @@ impl Crossings {
     }
 }
 
+/// How much of each edge is covered, and where.
+struct Covered {
+    shares: Vec<f64>,
+    runs: Vec<[f64; 2]>,
+    offsets: Vec<u32>,
+}
+
 /// O(edge): the edge pixels that lie on each line mark the parts of its length that they cover.
-fn edge_occupancy(
+fn cover_edges(
     grid: &Grid,
     arrangement: &Arrangement,
     directions: &Directions,
     lines: &Lines,
     gradients: &Gradients,
     parameters: &Parameters,
-) -> Vec<f64> {
+) -> Covered {
     let frame = &grid.frame;
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
-    let mut occupancy = vec![0.0; arrangement.edges.len()];
+    let mut shares = vec![0.0; arrangement.edges.len()];
+    let mut by_line: Vec<Vec<(u32, [f64; 2])>> = vec![Vec::new(); lines.len()];
     for (direction, &angle) in directions.angles.iter().enumerate() {
         let angle = frame.angle_to_grid(angle);
         let (cos, sin) = (libm::cos(angle), libm::sin(angle));
@@ -299,11 +322,60 @@ fn edge_occupancy(
                     last = first + 1;
                 }
                 let count = count_below(bits, &sums, last) - count_below(bits, &sums, first);
-                occupancy[edge as usize] = tidy(f64::from(count) / (last - first) as f64);
+                shares[edge as usize] = tidy(f64::from(count) / (last - first) as f64);
+                let metres = |bin: usize| {
+                    let place = if bin == first {
+                        from
+                    } else if bin == last {
+                        to
+                    } else {
+                        bin as f64
+                    };
+                    tidy((place - ends[0]).abs() * frame.resolution)
+                };
+                let found = &mut by_line[member.2];
+                let before = found.len();
+                found.extend(runs(bits, first, last).map(|[a, b]| {
+                    let (a, b) = (metres(a), metres(b));
+                    (edge, [a.min(b), a.max(b)])
+                }));
+                if ends[0] > ends[1] {
+                    found[before..].reverse();
+                }
             }
         }
     }
-    occupancy
+    // The edges are numbered line after line.
+    let mut offsets = vec![0; arrangement.edges.len() + 1];
+    by_line.iter().flatten().for_each(|&(edge, _)| offsets[edge as usize + 1] += 1);
+    for edge in 1..offsets.len() {
+        offsets[edge] += offsets[edge - 1];
+    }
+    Covered { shares, runs: by_line.into_iter().flatten().map(|(_, run)| run).collect(), offsets }
+}
+
+/// Runs of set bits from bit `first` to before bit `last`.
+fn runs(bits: &[u64], first: usize, last: usize) -> impl Iterator<Item = [usize; 2]> {
+    let mut at = first;
+    std::iter::from_fn(move || {
+        let from = next(bits, at, last, true);
+        at = next(bits, from, last, false);
+        (from < at).then_some([from, at])
+    })
+}
+
+/// The next bit that is `set`, from bit `at` on, or `last`.
+fn next(bits: &[u64], at: usize, last: usize, set: bool) -> usize {
+    let mut at = at;
+    while at < last {
+        let word = bits.get(at / 64).copied().unwrap_or(0) ^ if set { 0 } else { u64::MAX };
+        let ahead = (word >> (at % 64)).trailing_zeros() as usize;
+        if ahead < 64 {
+            return (at + ahead).min(last);
+        }
+        at = (at / 64 + 1) * 64;
+    }
+    last
 }
 
 /// Set bits before each word.

@@ -196,6 +196,8 @@ parameters! {
         "t1: faces whose occupancies differ by more are separated by their edge.";
     walls_occupancy: f64 = 0.5, "walls.occupancy", "", Range::Number(0.0, 1.0), false, "II-D",
         "t2: an edge occupied over more of its length is a wall.";
+    walls_min_opening: f64 = 0.4, "walls.min_opening", "m", Range::Number(0.0, 10.0), false, "II-D",
+        "A narrower gap in a wall is closed: nothing goes through it, and noise makes such gaps.";
     labels_method: Method = Method::Strips, "labels.method", "", Range::Word(METHODS), false, "II-E",
         "strips: aisles between facing walls, junctions where they meet; paper: Algorithm 1 as printed.";
     labels_min_width: f64 = 0.8, "labels.min_width", "m", Range::Number(0.0, 100.0), false, "II-E",

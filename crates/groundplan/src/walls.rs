@@ -6,6 +6,9 @@ use crate::occupancy::Occupancy;
 use crate::parameters::Parameters;
 use crate::subdivision::Subdivision;
 
+/// Metres in the map frame.
+type Point = [f64; 2];
+
 /// How a wall was known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WallKind {
@@ -15,7 +18,7 @@ pub enum WallKind {
     Freestanding,
 }
 
-/// A piece of wall: cogent edges of one kind, joined along their line.
+/// A piece of wall: what lies on cogent edges of one kind, joined along their line, from where it begins to where it ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall {
     /// Its ends, metres in the map frame.
@@ -73,18 +76,155 @@ pub fn find_walls(subdivision: &Subdivision, occupancy: &Occupancy, parameters: 
             Some(WallKind::Freestanding)
         }
     };
-    // The edges of a line follow one another.
-    let mut walls: Vec<Wall> = Vec::new();
-    let mut open: Option<(u32, WallKind)> = None;
-    for (edge, &line) in subdivision.edge_lines.iter().enumerate() {
-        let found = kind(edge).map(|kind| (line, kind));
-        let ends = subdivision.edge_vertices[edge].map(|v| subdivision.vertices[v as usize]);
-        match (found, walls.last_mut()) {
-            (Some(_), Some(wall)) if found == open => wall.points[1] = ends[1],
-            (Some((line, kind)), _) => walls.push(Wall { points: ends, line, kind }),
-            (None, _) => {}
+    let kinds: Vec<Option<WallKind>> = (0..disparity.len()).map(kind).collect();
+    let evidence = Evidence { subdivision, occupancy, kinds: &kinds, min_opening: parameters.walls_min_opening };
+    Walls { walls: evidence.walls(), cogent, disparity }
+}
+
+/// What the walls are traced from.
+struct Evidence<'a> {
+    subdivision: &'a Subdivision,
+    occupancy: &'a Occupancy,
+    /// Of the cogent edges.
+    kinds: &'a [Option<WallKind>],
+    min_opening: f64,
+}
+
+/// Part of an edge on which something lies.
+#[derive(Clone, Copy)]
+struct Run {
+    points: [Point; 2],
+    /// Of its edge; none where that is not cogent.
+    kind: Option<WallKind>,
+    /// Where its edge begins.
+    vertex: Point,
+}
+
+impl Evidence<'_> {
+    fn walls(&self) -> Vec<Wall> {
+        let lines = self.subdivision.edge_lines.as_slice();
+        let met = self.met();
+        let mut walls = Vec::new();
+        let mut first = 0;
+        // The edges of a line follow one another; those of the border come last.
+        for edges in lines.chunk_by(|a, b| a == b).filter(|edges| edges[0] != NONE) {
+            let edges = first..first + edges.len();
+            first = edges.end;
+            let line = lines[edges.start];
+            let crossings: Vec<Point> = edges
+                .clone()
+                .map(|edge| self.subdivision.edge_vertices[edge][0])
+                .chain([self.subdivision.edge_vertices[edges.end - 1][1]])
+                .filter(|&v| met[v as usize].iter().any(|&other| other != NONE && other != line))
+                .map(|v| self.subdivision.vertices[v as usize])
+                .collect();
+            let runs: Vec<Run> = edges.flat_map(|edge| self.runs(edge)).collect();
+            for stretch in self.whole(&runs).chunk_by(|a, b| gap(a, b) <= self.min_opening) {
+                self.trace(line, stretch, &crossings, &mut walls);
+            }
         }
-        open = found;
+        walls
     }
-    Walls { cogent, disparity, walls }
+
+    fn ends(&self, edge: usize) -> [Point; 2] {
+        self.subdivision.edge_vertices[edge].map(|v| self.subdivision.vertices[v as usize])
+    }
+
+    /// Two lines that have walls up to each vertex, or next to it.
+    fn met(&self) -> Vec<[u32; 2]> {
+        let mut met = vec![[NONE; 2]; self.subdivision.vertices.len()];
+        for edge in (0..self.kinds.len()).filter(|&edge| self.kinds[edge].is_some()) {
+            let [p, q] = self.ends(edge);
+            let runs = self.occupancy.runs_of(edge);
+            let (before, after) = (runs.first().map(|run| run[0]), runs.last().map(|run| distance(p, q) - run[1]));
+            for (vertex, apart) in self.subdivision.edge_vertices[edge].into_iter().zip([before, after]) {
+                if apart.is_some_and(|apart| apart <= self.min_opening) {
+                    let (line, lines) = (self.subdivision.edge_lines[edge], &mut met[vertex as usize]);
+                    if lines[0] == NONE {
+                        lines[0] = line;
+                    } else if lines[0] != line {
+                        lines[1] = line;
+                    }
+                }
+            }
+        }
+        met
+    }
+
+    fn runs(&self, edge: usize) -> impl Iterator<Item = Run> {
+        let ends = self.ends(edge);
+        let (length, kind) = (distance(ends[0], ends[1]), self.kinds[edge]);
+        let run = move |run: &[f64; 2]| Run { points: run.map(|at| point(ends, at, length)), kind, vertex: ends[0] };
+        self.occupancy.runs_of(edge).iter().map(run)
+    }
+
+    /// The runs of a line without scraps: what a gap too narrow to be an opening parts from the rest counts when it is
+    /// longer than the gap.
+    fn whole(&self, runs: &[Run]) -> Vec<Run> {
+        let pieces: Vec<&[Run]> = runs.chunk_by(|a, b| gap(a, b) < SAME).collect();
+        let gaps: Vec<f64> = pieces.windows(2).map(|pair| gap(&pair[0][pair[0].len() - 1], &pair[1][0])).collect();
+        let counts = |n: usize| {
+            let length = distance(pieces[n][0].points[0], pieces[n][pieces[n].len() - 1].points[1]);
+            let beside = [n.checked_sub(1), Some(n)].into_iter().flatten();
+            beside.filter_map(|n| gaps.get(n)).all(|&gap| gap > self.min_opening || gap <= length)
+        };
+        (0..pieces.len()).filter(|&n| counts(n)).flat_map(|n| pieces[n]).copied().collect()
+    }
+
+    /// The walls of a stretch without openings, one after another where its kind changes. Beyond its cogent edges it
+    /// goes on as far as it does.
+    fn trace(&self, line: u32, stretch: &[Run], crossings: &[Point], walls: &mut Vec<Wall>) {
+        let first = walls.len();
+        for run in stretch {
+            let last = walls[first..].last_mut();
+            match (last, run.kind) {
+                (Some(wall), Some(kind)) if wall.kind != kind => {
+                    wall.points[1] = run.vertex;
+                    walls.push(Wall { points: [run.vertex, run.points[1]], line, kind });
+                }
+                (Some(wall), _) => wall.points[1] = run.points[1],
+                (None, Some(kind)) => walls.push(Wall { points: [stretch[0].points[0], run.points[1]], line, kind }),
+                (None, None) => {}
+            }
+        }
+        // Edge pixels at a corner lie along neither wall: each is taken up to the other.
+        if let [wall, ..] = &mut walls[first..] {
+            wall.points[0] = self.corner(wall.points, crossings);
+        }
+        if let [.., wall] = &mut walls[first..] {
+            wall.points[1] = self.corner([wall.points[1], wall.points[0]], crossings);
+        }
+    }
+
+    /// The crossing that a wall's first end meets another wall in, else that end.
+    fn corner(&self, wall: [Point; 2], crossings: &[Point]) -> Point {
+        let apart = |p: &Point| distance(*p, wall[0]);
+        crossings
+            .iter()
+            .filter(|p| apart(p) <= self.min_opening && 2.0 * apart(p) < distance(wall[0], wall[1]))
+            .min_by(|p, q| apart(p).total_cmp(&apart(q)))
+            .map_or(wall[0], |p| *p)
+    }
+}
+
+/// Places nearer to each other than this are one, metres: what rounding makes of one.
+const SAME: f64 = 1e-5;
+
+fn distance(p: Point, q: Point) -> f64 {
+    libm::hypot(q[0] - p[0], q[1] - p[1])
+}
+
+fn gap(before: &Run, after: &Run) -> f64 {
+    distance(before.points[1], after.points[0])
+}
+
+/// The place so many metres along an edge, a vertex where it is one.
+fn point(ends: [Point; 2], metres: f64, length: f64) -> Point {
+    if metres < SAME {
+        ends[0]
+    } else if metres > length - SAME {
+        ends[1]
+    } else {
+        [0, 1].map(|axis| tidy(ends[0][axis] + (ends[1][axis] - ends[0][axis]) * metres / length))
+    }
 }

@@ -113,6 +113,10 @@ fn survey_case(seed: u64) -> Result<(), String> {
     if shares.into_iter().flatten().any(|share| !(0.0..=1.0).contains(share)) {
         return Err("a share is not between 0 and 1".to_owned());
     }
+    let coordinates = made.walls.walls.iter().flat_map(|wall| wall.points).flatten();
+    if coordinates.chain(made.occupancy.runs.iter().flatten().copied()).any(|value| !value.is_finite()) {
+        return Err("a wall is not finite".to_owned());
+    }
     let lengths = [&made.lines.offsets, &made.lines.amplitudes, &made.lines.widths];
     if lengths.into_iter().flatten().chain(&made.directions.angles).any(|value| !value.is_finite()) {
         return Err("a line or a direction is not finite".to_owned());
