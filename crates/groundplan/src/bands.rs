@@ -8,10 +8,19 @@ const BAND_ROWS: usize = 64;
 
 /// What `pass` makes of each band of `0..rows`, in the bands' order. Threads are started only when asked for.
 pub fn map_bands<T: Send>(rows: usize, threads: usize, pass: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
-    let gather = |made: &mut Vec<(usize, T)>, band: Range<usize>| made.push((band.start, pass(band)));
-    let mut made = fold_bands(rows, threads, Vec::new, gather, Vec::extend);
-    made.sort_unstable_by_key(|(start, _)| *start);
+    map_each(rows.div_ceil(BAND_ROWS), threads, |n| pass(band(n, rows)))
+}
+
+/// What `make` makes of each of `0..count`, in their order; each is worth a thread's while.
+pub fn map_each<T: Send>(count: usize, threads: usize, make: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let gather = |made: &mut Vec<(usize, T)>, n: usize| made.push((n, make(n)));
+    let mut made = fold(count, threads, Vec::new, gather, Vec::extend);
+    made.sort_unstable_by_key(|(n, _)| *n);
     made.into_iter().map(|(_, t)| t).collect()
+}
+
+fn band(n: usize, rows: usize) -> Range<usize> {
+    n * BAND_ROWS..((n + 1) * BAND_ROWS).min(rows)
 }
 
 /// A sum over the bands of `0..rows`: each thread adds bands to a total of its own, and the totals are merged. The
@@ -23,29 +32,38 @@ pub fn fold_bands<T: Send>(
     add: impl Fn(&mut T, Range<usize>) + Sync,
     merge: impl Fn(&mut T, T),
 ) -> T {
-    let bands = rows.div_ceil(BAND_ROWS);
-    let band = |n: usize| n * BAND_ROWS..((n + 1) * BAND_ROWS).min(rows);
+    fold(rows.div_ceil(BAND_ROWS), threads, empty, |total, n| add(total, band(n, rows)), merge)
+}
+
+fn fold<T: Send>(
+    count: usize,
+    threads: usize,
+    empty: impl Fn() -> T + Sync,
+    add: impl Fn(&mut T, usize) + Sync,
+    merge: impl Fn(&mut T, T),
+) -> T {
     let next = AtomicUsize::new(0);
     let work = || {
         let mut total = empty();
         loop {
             let n = next.fetch_add(1, Ordering::Relaxed);
-            if n >= bands {
+            if n >= count {
                 return total;
             }
-            add(&mut total, band(n));
+            add(&mut total, n);
         }
     };
-    let workers = threads.min(bands);
+    let workers = threads.min(count);
     if workers <= 1 {
         return work();
     }
-    let totals: Vec<T> = std::thread::scope(|scope| {
-        let handles: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        handles.into_iter().map(|h| h.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
-    });
-    let mut totals = totals.into_iter();
-    let mut sum = totals.next().unwrap_or_else(empty);
-    totals.for_each(|total| merge(&mut sum, total));
-    sum
+    std::thread::scope(|scope| {
+        // The thread that asks works too.
+        let handles: Vec<_> = (1..workers).map(|_| scope.spawn(work)).collect();
+        let mut sum = work();
+        for handle in handles {
+            merge(&mut sum, handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        }
+        sum
+    })
 }

@@ -37,6 +37,7 @@ pub mod parameters;
 pub mod radiograms;
 pub mod subdivision;
 mod survey;
+mod tiles;
 pub mod walls;
 pub mod wavelets;
 

@@ -176,11 +176,14 @@ impl<'a> Family<'a> {
         let margin = MARGIN.min(0.2 * width);
         let beyond = [[across[0] - BESIDE.1, across[0] - BESIDE.0], [across[1] + BESIDE.0, across[1] + BESIDE.1]];
         let view = self.view;
-        let holds = |n: usize, c: usize| sides[n].walls[c] || view.blocked(c, beyond[n][0], beyond[n][1]) > BEYOND;
+        let within = [across[0] + margin, across[1] - margin];
+        let (blocked, closed) = (view.all_blocked(within[0], within[1]), view.all_closed(within[0], within[1]));
+        let beyond = beyond.map(|[low, high]| view.all_blocked(low, high));
+        let holds = |n: usize, c: usize| sides[n].walls[c] || beyond[n][c] > BEYOND;
         (0..view.size[0])
             .map(|c| Column {
-                blocked: view.blocked(c, across[0] + margin, across[1] - margin),
-                closed: view.is_closed(c, across[0] + margin, across[1] - margin),
+                blocked: blocked[c],
+                closed: closed[c],
                 parted: parts.iter().any(|part| part.faces[c]),
                 walled: holds(0, c) && holds(1, c),
                 near: sides.iter().any(|side| side.near[c]),

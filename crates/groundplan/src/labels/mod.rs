@@ -3,6 +3,7 @@
 mod corridors;
 mod gates;
 mod junctions;
+mod look;
 mod names;
 mod outline;
 mod paper;

@@ -3,11 +3,13 @@
 use super::corridors::{self, Strip};
 use super::gates;
 use super::junctions::{self, Meeting};
+use super::look::Look;
 use super::names::{Named, names};
 use super::racks::{self, Row};
 use super::turned::Turned;
 use super::{Evidence, JunctionKind, Label, outline, rooms};
 use crate::grid::{State, tidy};
+use crate::tiles::Tiles;
 
 /// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
 const ALONE: (f64, f64) = (2.0, 5.0);
@@ -22,7 +24,8 @@ const RACKS: (usize, f64) = (3, 0.22);
 const RIM: f64 = 0.4;
 
 pub fn find(evidence: &Evidence) -> Vec<Label> {
-    let views: Vec<Turned> = (0..evidence.directions.angles.len()).map(|d| Turned::new(evidence, d)).collect();
+    let look = Look::new(evidence.grid, &Tiles::new(evidence.grid, evidence.threads));
+    let views: Vec<Turned> = (0..evidence.directions.angles.len()).map(|d| Turned::new(evidence, &look, d)).collect();
     let mut plan = Plan::new(evidence, &views, corridors::find(evidence, &views));
     let gates = gates::find(&views, &plan.strips, &plan.rows);
     if !gates.is_empty() {

@@ -2,8 +2,8 @@
 //! where structure lies on each line.
 
 use super::Evidence;
+use super::look::Look;
 use crate::bands::map_bands;
-use crate::grid::State;
 use crate::radiograms::weight;
 
 /// Cells of the turned raster are about this large, metres.
@@ -32,10 +32,12 @@ pub struct Turned {
     pub start: [f64; 2],
     /// Cells along and across.
     pub size: [usize; 2],
-    /// Sums over v of blocked samples, of occupied ones, and of all samples of the places that something stands in or
-    /// beside; for each column one more than there are places.
-    sums: Vec<[u32; 3]>,
-    /// Samples in a cell.
+    /// Sums over v of samples that are not free, of occupied ones, and of cells that something stands in or beside: a
+    /// row for each place across and one more, in each all columns.
+    blocked: Vec<u32>,
+    occupied: Vec<u32>,
+    barred: Vec<u32>,
+    /// Samples along a cell's side.
     samples: u32,
     /// Distance from post to post along its lines, metres, where posts recur.
     pub pitch: Option<f64>,
@@ -49,7 +51,7 @@ pub struct Turned {
 
 impl Turned {
     /// The map seen along one direction.
-    pub fn new(evidence: &Evidence, direction: usize) -> Self {
+    pub fn new(evidence: &Evidence, look: &Look, direction: usize) -> Self {
         let frame = &evidence.grid.frame;
         let angle = evidence.directions.angles[direction];
         let (cos, sin) = (libm::cos(angle), libm::sin(angle));
@@ -61,78 +63,65 @@ impl Turned {
         let side = (CELL / frame.resolution).round().max(1.0);
         let cell = side * frame.resolution;
         let start = [low(0), low(1)];
-        let size = [0, 1].map(|axis| ((high(axis) - start[axis]) / cell).ceil().max(1.0) as usize);
+        let size: [usize; 2] = [0, 1].map(|axis| ((high(axis) - start[axis]) / cell).ceil().max(1.0) as usize);
         let mut made = Self {
             direction,
             angle,
             cell,
             start,
             size,
-            sums: Vec::new(),
-            samples: (side as u32).clamp(1, 3).pow(2),
+            blocked: Vec::new(),
+            occupied: Vec::new(),
+            barred: Vec::new(),
+            samples: (side as u32).clamp(1, 3),
             pitch: None,
             lines: Vec::new(),
             offsets: Vec::new(),
             covered: Vec::new(),
         };
-        made.sum_blocked(evidence);
+        made.sum_blocked(evidence, look);
         made.cover_lines(evidence);
         made.pitch = super::pitch::find(evidence, &made);
         made
     }
 
-    fn sum_blocked(&mut self, evidence: &Evidence) {
+    /// Sums over v, from the samples that are blocked or occupied in each cell.
+    fn sum_blocked(&mut self, evidence: &Evidence, look: &Look) {
+        let [nu, nv] = self.size;
+        let samples = self.samples as usize;
         let frame = &evidence.grid.frame;
-        let (nu, nv) = (self.size[0], self.size[1]);
-        let rows: Vec<&[u8]> = (0..frame.height).map(|y| evidence.grid.row(y)).collect();
-        let counts = evidence.grid.table.states.map(|s| [u32::from(s != State::Free), u32::from(s == State::Occupied)]);
-        let per_side = f64::from(self.samples).sqrt();
-        // Steps on the grid, in pixels, of one sample along and across.
-        let origin = frame.to_pixels(self.point(0.0, 0.0));
-        let step = |u: f64, v: f64| {
-            let [x, y] = frame.to_pixels(self.point(u, v));
-            [(x - origin[0]) / per_side, (y - origin[1]) / per_side]
-        };
-        let (along, across) = (step(self.cell, 0.0), step(0.0, self.cell));
-        let count = per_side as usize;
-        let cells = map_bands(nu, evidence.threads, |band| {
-            let mut cells = Vec::with_capacity(band.len() * nv);
-            for column in band {
-                for n in 0..nv {
-                    let mut cell = [0u32; 2];
-                    for i in 0..count {
-                        let a = (column * count + i) as f64 + 0.5;
-                        for j in 0..count {
-                            let b = (n * count + j) as f64 + 0.5;
-                            let x = origin[0] + a * along[0] + b * across[0];
-                            let y = origin[1] + a * along[1] + b * across[1];
-                            let inside =
-                                x >= 0.0 && y >= 0.0 && (x as usize) < frame.width && (y as usize) < frame.height;
-                            let [blocked, occupied] =
-                                if inside { counts[usize::from(rows[y as usize][x as usize])] } else { [1, 0] };
-                            cell[0] += blocked;
-                            cell[1] += occupied;
-                        }
-                    }
-                    cells.push(cell);
+        let sample = self.cell / samples as f64;
+        // On the grid, in pixels: the first sample, and the steps to the next one along and across.
+        let at = |u: f64, v: f64| frame.to_pixels(self.to_map([self.start[0] + u, self.start[1] + v]));
+        let (origin, along, across) = (at(0.0, 0.0), at(sample, 0.0), at(0.0, sample));
+        let steps = [along, across].map(|p| [0, 1].map(|axis| p[axis] - origin[axis]));
+        let place = |b: f64| [0, 1].map(|axis| origin[axis] + 0.5 * steps[0][axis] + b * steps[1][axis]);
+        let cells = map_bands(nv, evidence.threads, |band| {
+            let mut cells = vec![0u8; band.len() * nu];
+            let (mut lane, mut sum) = (vec![0u8; nu * samples], vec![0u8; nu * samples]);
+            for (row, n) in cells.chunks_mut(nu).zip(band) {
+                sum.fill(0);
+                for j in 0..samples {
+                    look.along(place((n * samples + j) as f64 + 0.5), steps[0], &mut lane);
+                    sum.iter_mut().zip(&lane).for_each(|(sum, sample)| *sum += sample);
+                }
+                for (cell, part) in row.iter_mut().zip(sum.chunks_exact(samples)) {
+                    *cell = part.iter().sum();
                 }
             }
             cells
         })
         .concat();
-        self.sums = Vec::with_capacity(nu * (nv + 1));
-        for column in 0..nu {
-            let mut sum = [0u32; 3];
-            self.sums.push(sum);
-            for n in 0..nv {
-                let [blocked, occupied] = cells[column * nv + n];
-                // A wall one pixel thick, or not quite square to the columns, shows in two or three of them.
-                let near = column.saturating_sub(1)..(column + 2).min(nu);
-                let barred = near.into_iter().any(|c| cells[c * nv + n][1] > 0);
-                sum = [sum[0] + blocked, sum[1] + occupied, sum[2] + u32::from(barred) * self.samples];
-                self.sums.push(sum);
-            }
+        self.blocked = cumulate(nu, &cells, |cell| cell & 15);
+        self.occupied = cumulate(nu, &cells, |cell| cell >> 4);
+        // A wall one pixel thick, or not quite square to the columns, shows in two or three of them.
+        let mut barred = vec![0u8; cells.len()];
+        for (to, row) in barred.chunks_mut(nu).zip(cells.chunks(nu)) {
+            to.iter_mut().zip(row).for_each(|(to, cell)| *to = cell >> 4);
+            to.iter_mut().zip(&row[1..]).for_each(|(to, next)| *to |= next >> 4);
+            to[1..].iter_mut().zip(row).for_each(|(to, before)| *to |= before >> 4);
         }
+        self.barred = cumulate(nu, &barred, |cell| u8::from(cell != 0));
     }
 
     fn cover_lines(&mut self, evidence: &Evidence) {
@@ -171,11 +160,6 @@ impl Turned {
         [x * cos + y * sin, y * cos - x * sin]
     }
 
-    /// The point of the map frame `u` along and `v` across from the raster's start.
-    fn point(&self, u: f64, v: f64) -> [f64; 2] {
-        self.to_map([self.start[0] + u, self.start[1] + v])
-    }
-
     /// The point of the map frame at a place.
     pub fn to_map(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let (cos, sin) = (libm::cos(self.angle), libm::sin(self.angle));
@@ -194,31 +178,78 @@ impl Turned {
 
     /// Share of a column that is not free between two places across, 0 to 1; all of it where there is no cell between.
     pub fn blocked(&self, column: usize, low: f64, high: f64) -> f64 {
-        self.share(column, low, high, 0)
+        self.share(&self.blocked, self.samples.pow(2), column, low, high)
     }
 
     /// Share of the way across a column that is barred: something stands in it, or in the columns beside it.
     pub fn barred(&self, column: usize, low: f64, high: f64) -> f64 {
-        self.share(column, low, high, 2)
+        self.share(&self.barred, 1, column, low, high)
     }
 
     /// True when nothing gets through a column between two places across.
     pub fn is_closed(&self, column: usize, low: f64, high: f64) -> bool {
-        self.blocked(column, low, high) > IMPASSABLE || self.barred(column, low, high) > BARRED
+        is_closed(self.blocked(column, low, high), self.barred(column, low, high))
     }
 
     /// Share of a column that is occupied.
     pub fn occupied(&self, column: usize, low: f64, high: f64) -> f64 {
-        self.share(column, low, high, 1)
+        self.share(&self.occupied, self.samples.pow(2), column, low, high)
     }
 
-    fn share(&self, column: usize, low: f64, high: f64, kind: usize) -> f64 {
-        let at = |v: f64| (((v - self.start[1]) / self.cell).round().max(0.0) as usize).min(self.size[1]);
-        let (from, to) = (at(low), at(high).max(at(low)));
+    fn share(&self, sums: &[u32], samples: u32, column: usize, low: f64, high: f64) -> f64 {
+        let (from, to) = self.cells(low, high);
         if from == to {
             return 1.0;
         }
-        let sums = &self.sums[column * (self.size[1] + 1)..];
-        f64::from(sums[to][kind] - sums[from][kind]) / f64::from((to - from) as u32 * self.samples)
+        let at = |n: usize| sums[n * self.size[0] + column];
+        f64::from(at(to) - at(from)) / f64::from((to - from) as u32 * samples)
     }
+
+    /// [`Turned::blocked`] of all columns.
+    pub fn all_blocked(&self, low: f64, high: f64) -> Vec<f64> {
+        self.shares(&self.blocked, self.samples.pow(2), low, high)
+    }
+
+    /// [`Turned::is_closed`] of all columns.
+    pub fn all_closed(&self, low: f64, high: f64) -> Vec<bool> {
+        let barred = self.shares(&self.barred, 1, low, high);
+        self.all_blocked(low, high)
+            .into_iter()
+            .zip(barred)
+            .map(|(blocked, barred)| is_closed(blocked, barred))
+            .collect()
+    }
+
+    fn shares(&self, sums: &[u32], samples: u32, low: f64, high: f64) -> Vec<f64> {
+        let (from, to) = self.cells(low, high);
+        let columns = self.size[0];
+        if from == to {
+            return vec![1.0; columns];
+        }
+        let count = f64::from((to - from) as u32 * samples);
+        let row = |n: usize| &sums[n * columns..(n + 1) * columns];
+        row(to).iter().zip(row(from)).map(|(to, from)| f64::from(to - from) / count).collect()
+    }
+
+    /// The cells across between two places: from, to.
+    fn cells(&self, low: f64, high: f64) -> (usize, usize) {
+        let at = |v: f64| (((v - self.start[1]) / self.cell).round().max(0.0) as usize).min(self.size[1]);
+        (at(low), at(high).max(at(low)))
+    }
+}
+
+fn is_closed(blocked: f64, barred: f64) -> bool {
+    blocked > IMPASSABLE || barred > BARRED
+}
+
+/// Sums of rows of cells: a row of nothing, the first row, the first two, and so on.
+fn cumulate(width: usize, cells: &[u8], part: impl Fn(u8) -> u8) -> Vec<u32> {
+    let mut sums = vec![0u32; cells.len() + width];
+    for (n, row) in cells.chunks(width).enumerate() {
+        let (below, above) = sums[n * width..(n + 2) * width].split_at_mut(width);
+        for ((above, below), &cell) in above.iter_mut().zip(below).zip(row) {
+            *above = *below + u32::from(part(cell));
+        }
+    }
+    sums
 }

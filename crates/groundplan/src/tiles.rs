@@ -1,0 +1,89 @@
+//! Tiles of 8 x 8 pixels: where the map is all of one state. What lies in the midst of the free, the occupied or the
+//! unknown is most of a map, and no pass need look at it pixel by pixel.
+
+use crate::bands::map_bands;
+use crate::grid::{Grid, State};
+
+/// Pixels along a tile's side: a word of eight bytes. A band of rows has whole tiles.
+pub(crate) const SIDE: usize = 8;
+
+/// The tiles of a map, row after row from the bottom; those at its right and upper borders may be cut off.
+pub(crate) struct Tiles {
+    /// Tiles in a row.
+    pub width: usize,
+    /// Rows of tiles.
+    pub height: usize,
+    /// For each tile the states that its pixels have, a bit for each: [`bit`].
+    pub states: Vec<u8>,
+}
+
+/// A state in a set of states.
+pub(crate) const fn bit(state: State) -> u8 {
+    1 << state as u8
+}
+
+impl Tiles {
+    /// Looks at every pixel of the map once, eight at a time.
+    pub fn new(grid: &Grid, threads: usize) -> Self {
+        let (width, height) = (grid.frame.width.div_ceil(SIDE), grid.frame.height.div_ceil(SIDE));
+        let bits = grid.table.states.map(bit);
+        let states = map_bands(grid.frame.height, threads, |band| {
+            let mut states = vec![0u8; band.len().div_ceil(SIDE) * width];
+            // The last eight pixels that were looked at in each tile: mostly the next are the same.
+            let mut last = vec![0u64; width];
+            for (tiles, low) in states.chunks_mut(width).zip(band.clone().step_by(SIDE)) {
+                for y in low..(low + SIDE).min(band.end) {
+                    let words = grid.row(y).chunks_exact(SIDE);
+                    let rest = words.remainder();
+                    for ((tile, last), pixels) in tiles.iter_mut().zip(&mut last).zip(words) {
+                        let word = pixels.iter().fold(0, |word, &pixel| word << 8 | u64::from(pixel));
+                        if *tile == 0 || word != *last {
+                            *last = word;
+                            *tile |= if word == word.rotate_left(8) {
+                                bits[usize::from(pixels[0])]
+                            } else {
+                                pixels.iter().fold(0, |set, &pixel| set | bits[usize::from(pixel)])
+                            };
+                        }
+                    }
+                    for &pixel in rest {
+                        tiles[width - 1] |= bits[usize::from(pixel)];
+                    }
+                }
+            }
+            states
+        });
+        Self { width, height, states: states.concat() }
+    }
+
+    /// How far from each tile all is alike: 0 where it is of several states itself, 1 when a neighbour is not like it,
+    /// 2 when a neighbour's neighbour is not, and so on. Beyond the map's borders all is unknown.
+    pub fn reaches(&self) -> Vec<u8> {
+        let (w, h) = (self.width, self.height);
+        // With a border, so that no tile asks where it lies.
+        let wide = w + 2;
+        let mut states = vec![bit(State::Unknown); wide * (h + 2)];
+        for (to, from) in states[wide + 1..].chunks_mut(wide).zip(self.states.chunks(w.max(1))) {
+            to[..w].copy_from_slice(from);
+        }
+        let mut reaches = vec![u8::MAX; states.len()];
+        // There and back again: the least of the four neighbours that are done, and one more.
+        let visit = |reaches: &mut [u8], at: usize, done: [usize; 4]| {
+            let own = states[at];
+            let near = |n: usize| if states[n] == own { reaches[n] } else { 0 };
+            let least = done.into_iter().map(near).fold(u8::MAX, u8::min);
+            reaches[at] = if own.is_power_of_two() { reaches[at].min(least.saturating_add(1)) } else { 0 };
+        };
+        for y in 1..=h {
+            for at in y * wide + 1..y * wide + 1 + w {
+                visit(&mut reaches, at, [at - 1, at - wide - 1, at - wide, at - wide + 1]);
+            }
+        }
+        for y in (1..=h).rev() {
+            for at in (y * wide + 1..y * wide + 1 + w).rev() {
+                visit(&mut reaches, at, [at + 1, at + wide + 1, at + wide, at + wide - 1]);
+            }
+        }
+        (1..=h).flat_map(|y| reaches[y * wide + 1..y * wide + 1 + w].iter().copied()).collect()
+    }
+}
