@@ -66,9 +66,10 @@ impl<'py> Named<'py> {
         self.with(name, array)
     }
 
-    pub fn pairs<T: Element + Copy>(self, name: &str, values: &[[T; 2]]) -> PyResult<Self> {
-        let flat = PyArray1::from_vec(self.0.py(), values.as_flattened().to_vec());
-        let array = flat.reshape([values.len(), 2])?.into_any();
+    pub fn pairs<T: Element>(self, name: &str, values: Vec<[T; 2]>) -> PyResult<Self> {
+        let count = values.len();
+        let flat = PyArray1::from_vec(self.0.py(), values.into_flattened());
+        let array = flat.reshape([count, 2])?.into_any();
         self.with(name, array)
     }
 
@@ -124,9 +125,9 @@ pub fn demand_subdivision(subdivision: &Subdivision, faces: usize, edges: usize)
     demand(fits, "the faces or edges are not those of this subdivision")
 }
 
-/// Ids as Python has them: none is -1.
-fn signed(ids: &[u32]) -> Vec<i32> {
-    ids.iter().map(|&id| if id == NONE { -1 } else { id as i32 }).collect()
+/// Ids as Python has them: none is -1, which has the bits of [`NONE`].
+fn signed(ids: Vec<u32>) -> Vec<i32> {
+    ids.into_iter().map(|id| id as i32).collect()
 }
 
 fn unsigned(ids: &[i32]) -> Vec<u32> {
@@ -202,11 +203,11 @@ pub fn table_row<'py>(py: Python<'py>, row: &Parameter) -> PyResult<Bound<'py, P
         .done())
 }
 
-pub fn from_gradients<'py>(py: Python<'py>, made: &Gradients) -> PyResult<Bound<'py, PyDict>> {
+pub fn from_gradients(py: Python<'_>, made: Gradients) -> PyResult<Bound<'_, PyDict>> {
     Ok(Named::new(py)
-        .pairs("pixels", &made.pixels)?
-        .list("angles", made.angles.clone())?
-        .list("magnitudes", made.magnitudes.clone())?
+        .pairs("pixels", made.pixels)?
+        .list("angles", made.angles)?
+        .list("magnitudes", made.magnitudes)?
         .done())
 }
 
@@ -222,11 +223,11 @@ pub fn gradients(dict: &Bound<'_, PyDict>) -> PyResult<Gradients> {
     Ok(made)
 }
 
-pub fn from_directions<'py>(py: Python<'py>, made: &Directions) -> PyResult<Bound<'py, PyDict>> {
+pub fn from_directions(py: Python<'_>, made: Directions) -> PyResult<Bound<'_, PyDict>> {
     Ok(Named::new(py)
-        .list("angles", made.angles.clone())?
-        .list("weights", made.weights.clone())?
-        .list("histogram", made.histogram.clone())?
+        .list("angles", made.angles)?
+        .list("weights", made.weights)?
+        .list("histogram", made.histogram)?
         .with("explained", made.explained)?
         .done())
 }
@@ -271,12 +272,12 @@ pub fn from_response<'py>(py: Python<'py>, made: &Response, step: f64) -> PyResu
         .done())
 }
 
-pub fn from_lines<'py>(py: Python<'py>, made: &Lines) -> PyResult<Bound<'py, PyDict>> {
+pub fn from_lines(py: Python<'_>, made: Lines) -> PyResult<Bound<'_, PyDict>> {
     Ok(Named::new(py)
-        .list("directions", made.directions.clone())?
-        .list("offsets", made.offsets.clone())?
-        .list("amplitudes", made.amplitudes.clone())?
-        .list("widths", made.widths.clone())?
+        .list("directions", made.directions)?
+        .list("offsets", made.offsets)?
+        .list("amplitudes", made.amplitudes)?
+        .list("widths", made.widths)?
         .with("min_amplitude", made.min_amplitude)?
         .done())
 }
@@ -296,19 +297,18 @@ pub fn lines(dict: &Bound<'_, PyDict>) -> PyResult<Lines> {
     Ok(made)
 }
 
-pub fn from_subdivision<'py>(py: Python<'py>, made: &Subdivision) -> PyResult<Bound<'py, PyDict>> {
-    let sides: Vec<[i32; 2]> =
-        made.edge_faces.iter().map(|f| f.map(|f| if f == NONE { -1 } else { f as i32 })).collect();
+pub fn from_subdivision(py: Python<'_>, made: Subdivision) -> PyResult<Bound<'_, PyDict>> {
+    let sides = made.edge_faces.into_iter().map(|f| f.map(|f| f as i32)).collect();
     Ok(Named::new(py)
-        .pairs("vertices", &made.vertices)?
-        .pairs("edge_vertices", &made.edge_vertices)?
-        .list("edge_lines", signed(&made.edge_lines))?
-        .pairs("edge_faces", &sides)?
-        .list("face_vertices", made.face_vertices.clone())?
-        .list("face_edges", made.face_edges.clone())?
-        .list("face_offsets", made.face_offsets.clone())?
-        .pairs("centres", &made.centres)?
-        .list("areas", made.areas.clone())?
+        .pairs("vertices", made.vertices)?
+        .pairs("edge_vertices", made.edge_vertices)?
+        .list("edge_lines", signed(made.edge_lines))?
+        .pairs("edge_faces", sides)?
+        .list("face_vertices", made.face_vertices)?
+        .list("face_edges", made.face_edges)?
+        .list("face_offsets", made.face_offsets)?
+        .pairs("centres", made.centres)?
+        .list("areas", made.areas)?
         .with("map_area", made.map_area)?
         .done())
 }
@@ -329,16 +329,16 @@ pub fn subdivision(dict: &Bound<'_, PyDict>) -> PyResult<Subdivision> {
     })
 }
 
-pub fn from_occupancy<'py>(py: Python<'py>, made: &Occupancy) -> PyResult<Bound<'py, PyDict>> {
+pub fn from_occupancy(py: Python<'_>, made: Occupancy) -> PyResult<Bound<'_, PyDict>> {
     Ok(Named::new(py)
-        .list("faces", made.faces.clone())?
-        .list("unknown", made.unknown.clone())?
-        .list("free", made.free.clone())?
-        .list("pixels", made.pixels.clone())?
-        .list("states", made.states.iter().map(|s| *s as u8).collect())?
-        .list("edges", made.edges.clone())?
-        .pairs("runs", &made.runs)?
-        .list("run_offsets", made.run_offsets.clone())?
+        .list("faces", made.faces)?
+        .list("unknown", made.unknown)?
+        .list("free", made.free)?
+        .list("pixels", made.pixels)?
+        .list("states", made.states.into_iter().map(|s| s as u8).collect())?
+        .list("edges", made.edges)?
+        .pairs("runs", made.runs)?
+        .list("run_offsets", made.run_offsets)?
         .done())
 }
 
@@ -366,12 +366,12 @@ pub fn occupancy(dict: &Bound<'_, PyDict>) -> PyResult<Occupancy> {
     Ok(made)
 }
 
-pub fn from_walls<'py>(py: Python<'py>, made: &Walls) -> PyResult<Bound<'py, PyDict>> {
+pub fn from_walls(py: Python<'_>, made: Walls) -> PyResult<Bound<'_, PyDict>> {
     let ends: Vec<[f64; 2]> = made.walls.iter().flat_map(|w| w.points).collect();
     Ok(Named::new(py)
-        .list("cogent", made.cogent.clone())?
-        .list("disparity", made.disparity.clone())?
-        .pairs("points", &ends)?
+        .list("cogent", made.cogent)?
+        .list("disparity", made.disparity)?
+        .pairs("points", ends)?
         .list("lines", made.walls.iter().map(|w| w.line).collect())?
         .list("freestanding", made.walls.iter().map(|w| w.kind == WallKind::Freestanding).collect())?
         .done())
@@ -393,12 +393,8 @@ pub fn walls(dict: &Bound<'_, PyDict>) -> PyResult<Walls> {
     })
 }
 
-pub fn from_adjacency<'py>(py: Python<'py>, made: &Adjacency) -> PyResult<Bound<'py, PyDict>> {
-    Ok(Named::new(py)
-        .pairs("faces", &made.faces)?
-        .list("edges", made.edges.clone())?
-        .list("connected", made.connected.clone())?
-        .done())
+pub fn from_adjacency(py: Python<'_>, made: Adjacency) -> PyResult<Bound<'_, PyDict>> {
+    Ok(Named::new(py).pairs("faces", made.faces)?.list("edges", made.edges)?.list("connected", made.connected)?.done())
 }
 
 /// Labels are few: each is a dictionary of plain values, as in the survey's JSON.

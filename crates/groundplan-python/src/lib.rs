@@ -56,13 +56,13 @@ mod _core {
         }
         let made = layout.with_grid(py, |grid| groundplan::survey(grid, &parameters, given, threads))?;
         Ok(Named::new(py)
-            .with("directions", convert::from_directions(py, &made.directions)?)?
+            .with("directions", convert::from_directions(py, made.directions)?)?
             .with("radiograms", convert::from_radiograms(py, &made.radiograms)?)?
-            .with("lines", convert::from_lines(py, &made.lines)?)?
-            .with("subdivision", convert::from_subdivision(py, &made.subdivision)?)?
-            .with("occupancy", convert::from_occupancy(py, &made.occupancy)?)?
-            .with("walls", convert::from_walls(py, &made.walls)?)?
-            .with("adjacency", convert::from_adjacency(py, &made.adjacency)?)?
+            .with("lines", convert::from_lines(py, made.lines)?)?
+            .with("subdivision", convert::from_subdivision(py, made.subdivision)?)?
+            .with("occupancy", convert::from_occupancy(py, made.occupancy)?)?
+            .with("walls", convert::from_walls(py, made.walls)?)?
+            .with("adjacency", convert::from_adjacency(py, made.adjacency)?)?
             .with("labels", convert::from_labels(py, &made.labels)?)?
             .with("warnings", made.warnings.into_iter().map(|w| (w.code, w.message)).collect::<Vec<_>>())?
             .done())
@@ -78,7 +78,7 @@ mod _core {
     ) -> PyResult<Bound<'py, PyDict>> {
         let parameters = convert::parameters(parameters)?;
         let made = layout.with_grid(py, |grid| gradients::find_gradients(grid, &parameters, threads))?;
-        convert::from_gradients(py, &made)
+        convert::from_gradients(py, made)
     }
 
     /// II-A: dominant directions.
@@ -92,7 +92,7 @@ mod _core {
         let gradients = convert::gradients(gradients)?;
         convert::demand_grid(&gradients, &layout.frame())?;
         let made = directions::find_directions(&layout.frame(), &gradients, &convert::parameters(parameters)?);
-        convert::from_directions(py, &made)
+        convert::from_directions(py, made)
     }
 
     /// II-B: one radiogram for each direction.
@@ -133,7 +133,7 @@ mod _core {
         parameters: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let radiograms = radiograms.iter().map(convert::radiogram).collect::<PyResult<Vec<_>>>()?;
-        convert::from_lines(py, &lines::find_lines(&radiograms, &convert::parameters(parameters)?))
+        convert::from_lines(py, lines::find_lines(&radiograms, &convert::parameters(parameters)?))
     }
 
     /// II-C: vertices, edges, faces.
@@ -148,7 +148,7 @@ mod _core {
         convert::demand_directions(&lines, &directions)?;
         let frame = layout.frame();
         let made = arrangement::arrange(&frame, &directions.angles, &lines);
-        convert::from_subdivision(py, &Subdivision::new(&frame, &made))
+        convert::from_subdivision(py, Subdivision::new(&frame, made))
     }
 
     /// Every broken invariant of a subdivision.
@@ -176,7 +176,7 @@ mod _core {
             let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines);
             occupancy::find_occupancy(grid, &arrangement, &directions, &lines, &gradients, &parameters, threads)
         })?;
-        convert::from_occupancy(py, &made)
+        convert::from_occupancy(py, made)
     }
 
     /// II-D: C(edge) and the walls.
@@ -190,7 +190,7 @@ mod _core {
         let (subdivision, occupancy) = (convert::subdivision(subdivision)?, convert::occupancy(occupancy)?);
         let states = occupancy.states.len().min(occupancy.faces.len());
         convert::demand_subdivision(&subdivision, states, occupancy.edges.len())?;
-        convert::from_walls(py, &walls::find_walls(&subdivision, &occupancy, &convert::parameters(parameters)?))
+        convert::from_walls(py, walls::find_walls(&subdivision, &occupancy, &convert::parameters(parameters)?))
     }
 
     /// II-D, II-E: the dual.
@@ -202,7 +202,7 @@ mod _core {
     ) -> PyResult<Bound<'py, PyDict>> {
         let (subdivision, walls) = (convert::subdivision(subdivision)?, convert::walls(walls)?);
         convert::demand_subdivision(&subdivision, subdivision.faces(), walls.cogent.len())?;
-        convert::from_adjacency(py, &adjacency::find_adjacency(&subdivision, &walls))
+        convert::from_adjacency(py, adjacency::find_adjacency(&subdivision, &walls))
     }
 
     /// II-E: what is what.
@@ -224,7 +224,7 @@ mod _core {
         let (gradients, parameters) = (convert::gradients(gradients)?, convert::parameters(parameters)?);
         let frame = layout.frame();
         convert::demand_grid(&gradients, &frame)?;
-        let subdivision = Subdivision::new(&frame, &arrangement::arrange(&frame, &directions.angles, &lines));
+        let subdivision = Subdivision::new(&frame, arrangement::arrange(&frame, &directions.angles, &lines));
         let (occupancy, walls) = (convert::occupancy(occupancy)?, convert::walls(walls)?);
         let states = occupancy.states.len().min(occupancy.faces.len());
         convert::demand_subdivision(&subdivision, states, occupancy.edges.len().min(walls.cogent.len()))?;

@@ -46,14 +46,15 @@ impl Point {
 
     /// Rows of pixels whose centres lie below: ceil(y - 1/2).
     fn rows_below(self, y: f64, height: usize) -> u32 {
-        let guess = (y - 0.5).ceil();
-        let rows = if ((y - 0.5) - (y - 0.5).round()).abs() > TIE_PIXELS {
-            guess as i128
+        let whole = (y + 0.5) as i64;
+        let part = (y + 0.5) - whole as f64;
+        let rows = if part > TIE_PIXELS && part < 1.0 - TIE_PIXELS {
+            whole
         } else {
             let (n, d) = (2 * self.y - self.over, 2 * self.over);
-            -((-n).div_euclid(d))
+            -((-n).div_euclid(d)) as i64
         };
-        rows.clamp(0, height as i128) as u32
+        rows.clamp(0, height as i64) as u32
     }
 }
 
@@ -73,12 +74,12 @@ pub struct Arrangement {
     pub edge_lines: Vec<u32>,
     /// Edges of each line: a range into `edges`.
     pub line_edges: Vec<std::ops::Range<u32>>,
-    /// Next half-edge around the face on the left.
-    pub next: Vec<u32>,
-    /// Face on the left of each half-edge, [`NONE`] outside.
-    pub faces: Vec<u32>,
-    /// One half-edge of each face.
-    pub face_starts: Vec<u32>,
+    /// Faces on the left and on the right of each edge, [`NONE`] outside.
+    pub edge_faces: Vec<[u32; 2]>,
+    /// Half-edges of the faces, counter-clockwise; face f has those from `face_offsets[f]` to `face_offsets[f + 1]`.
+    pub face_halves: Vec<u32>,
+    /// Where each face's half-edges start; one more than there are faces.
+    pub face_offsets: Vec<u32>,
 }
 
 /// Arranges the lines; those that do not cross the map's interior get no edges.
@@ -128,10 +129,20 @@ struct Builder {
     ends: Vec<Option<[End; 2]>>,
     vertices: Vec<[f64; 2]>,
     rows_below: Vec<u32>,
-    /// Union-find over vertices: three lines through a point are one vertex.
+    /// Union-find over vertices: three lines through a point are one vertex. Empty until any two were found to be one.
     same: Vec<u32>,
-    /// True once any two vertices were found to be one.
-    merged: bool,
+}
+
+/// The vertices along each line; the n-th line's end at `ends[n + 1]`.
+struct Chains {
+    vertices: Vec<u32>,
+    ends: Vec<usize>,
+}
+
+impl Chains {
+    fn with_room(lines: usize, crossings: usize) -> Self {
+        Self { vertices: Vec::with_capacity(crossings + 2 * lines), ends: vec![0] }
+    }
 }
 
 /// Where a line meets the border: side (0 bottom, 1 right, 2 top, 3 left) and the point.
@@ -170,7 +181,6 @@ impl Builder {
             vertices: Vec::new(),
             rows_below: Vec::new(),
             same: Vec::new(),
-            merged: false,
         };
         // A family keeps only the members that cross the map, each once.
         builder.ends = vec![None; builder.lines.len()];
@@ -227,8 +237,7 @@ impl Builder {
         let floats = point.to_floats();
         self.vertices.push(floats);
         self.rows_below.push(point.rows_below(floats[1], self.height as usize));
-        self.same.push(self.same.len() as u32);
-        self.same.len() as u32 - 1
+        self.vertices.len() as u32 - 1
     }
 
     fn root(&mut self, mut n: u32) -> u32 {
@@ -240,8 +249,10 @@ impl Builder {
     }
 
     fn merge(&mut self, a: u32, b: u32) {
+        if self.same.is_empty() {
+            self.same = (0..self.vertices.len() as u32).collect();
+        }
         let (a, b) = (self.root(a), self.root(b));
-        self.merged |= a != b;
         self.same[a.max(b) as usize] = a.min(b);
     }
 
@@ -268,19 +279,31 @@ impl Builder {
         let families = std::mem::take(&mut self.families);
         let count = families.len();
         let mut runs = vec![Run::default(); self.lines.len() * count];
+        let mut crossings = 0;
         for (f, family) in families.iter().enumerate() {
             for &n in &family.members {
                 let Some(ends) = self.ends[n as usize] else { continue };
                 for (g, other) in families.iter().enumerate().filter(|(g, _)| *g != f) {
                     let mut run = Self::run(&ends, other);
                     if f < g {
-                        run.vertex = self.vertices.len() as u32;
-                        for m in run.first..run.first + run.count {
-                            let point = self.crossing(n, other.members[m as usize]);
-                            self.add_vertex(point);
-                        }
+                        run.vertex = crossings;
+                        crossings += run.count;
                     }
                     runs[n as usize * count + g] = run;
+                }
+            }
+        }
+        // Room for all of them at once: growing would copy what is many, and touch twice the memory.
+        let room = crossings as usize + 2 * self.lines.len() + 4;
+        self.vertices.reserve_exact(room);
+        self.rows_below.reserve_exact(room);
+        for (f, family) in families.iter().enumerate() {
+            for &n in &family.members {
+                for (g, other) in families.iter().enumerate().skip(f + 1) {
+                    let run = &runs[n as usize * count + g];
+                    for m in run.first..run.first + run.count {
+                        self.add_vertex(self.crossing(n, other.members[m as usize]));
+                    }
                 }
             }
         }
@@ -308,35 +331,45 @@ impl Builder {
             }
         }
         // The vertices along each line, families merged in the order the line meets them.
-        let mut chains: Vec<Vec<u32>> = vec![Vec::new(); self.lines.len()];
-        for (f, family) in families.iter().enumerate() {
-            for (place, &n) in family.members.iter().enumerate() {
-                let mut sequences = Vec::with_capacity(count);
-                for (g, other) in families.iter().enumerate().filter(|(g, _)| *g != f) {
-                    let run = &runs[n as usize * count + g];
+        let mut chains = Chains::with_room(self.lines.len(), 2 * crossings as usize);
+        let mut sequences: Vec<Vec<(u32, u32)>> = vec![Vec::new(); count.saturating_sub(1)];
+        let family_of = {
+            let mut of = vec![None; self.lines.len()];
+            for (f, family) in families.iter().enumerate() {
+                for (place, &n) in family.members.iter().enumerate() {
+                    of[n as usize] = Some((f, place as u32));
+                }
+            }
+            of
+        };
+        for (n, of) in family_of.iter().enumerate() {
+            if let &Some((f, place)) = of {
+                let others = families.iter().enumerate().filter(|(g, _)| *g != f);
+                for (sequence, (g, other)) in sequences.iter_mut().zip(others) {
+                    let run = &runs[n * count + g];
                     let vertex = |m: u32| {
                         if f < g {
                             run.vertex + (m - run.first)
                         } else {
                             let back = &runs[other.members[m as usize] as usize * count + f];
-                            back.vertex + (place as u32 - back.first)
+                            back.vertex + (place - back.first)
                         }
                     };
                     let members = run.first..run.first + run.count;
-                    let mut sequence: Vec<(u32, u32)> =
-                        members.map(|m| (vertex(m), other.members[m as usize])).collect();
+                    sequence.clear();
+                    sequence.extend(members.map(|m| (vertex(m), other.members[m as usize])));
                     // Along (b, -a) the other's offset grows when its normal has a part that way.
+                    let family = &families[f];
                     if i128::from(other.a) * i128::from(family.b) < i128::from(other.b) * i128::from(family.a) {
                         sequence.reverse();
                     }
-                    sequences.push(sequence);
                 }
-                let [first, last] = end_vertices[n as usize];
-                let mut chain = vec![first];
-                self.merge_sequences(n, &sequences, &mut chain);
-                chain.push(last);
-                chains[n as usize] = chain;
+                let [first, last] = end_vertices[n];
+                chains.vertices.push(first);
+                self.merge_sequences(n as u32, &sequences, &mut chains.vertices);
+                chains.vertices.push(last);
             }
+            chains.ends.push(chains.vertices.len());
         }
         self.assemble(&chains, &border)
     }
@@ -346,6 +379,10 @@ impl Builder {
         let line = self.lines[n as usize];
         let by_x = line.b.abs() >= line.a.abs();
         let forwards = if by_x { line.b > 0 } else { line.a < 0 };
+        if let [sequence] = sequences {
+            chain.extend(sequence.iter().map(|(vertex, _)| vertex));
+            return;
+        }
         let mut heads = vec![0usize; sequences.len()];
         let mut last: Option<(u32, u32)> = None;
         loop {
@@ -362,8 +399,7 @@ impl Builder {
             }
             let Some((s, taken)) = best else { return };
             heads[s] += 1;
-            if sequences.len() > 1
-                && let Some(before) = last
+            if let Some(before) = last
                 && self.order(n, by_x, forwards, before, taken) == Ordering::Equal
             {
                 self.merge(before.0, taken.0);
@@ -388,9 +424,47 @@ impl Builder {
     }
 
     /// Chains of vertices -> edges, half-edges around the vertices, faces.
-    fn assemble(mut self, chains: &[Vec<u32>], border: &[(End, u32)]) -> Arrangement {
-        // Merged vertices go; the others keep their order.
-        let mut ids = vec![0u32; self.vertices.len()];
+    fn assemble(mut self, chains: &Chains, border: &[(End, u32)]) -> Arrangement {
+        let ids = self.drop_merged();
+        let id = |n: u32| if ids.is_empty() { n } else { ids[n as usize] };
+        let room = chains.vertices.len() + border.len();
+        let mut made = Arrangement {
+            edges: Vec::with_capacity(room),
+            edge_lines: Vec::with_capacity(room),
+            line_edges: Vec::with_capacity(self.lines.len()),
+            ..Arrangement::default()
+        };
+        for (n, ends) in chains.ends.windows(2).enumerate() {
+            let start = made.edges.len() as u32;
+            for pair in chains.vertices[ends[0]..ends[1]].windows(2) {
+                let [p, q] = [id(pair[0]), id(pair[1])];
+                if p != q {
+                    made.edges.push([p, q]);
+                    made.edge_lines.push(n as u32);
+                }
+            }
+            made.line_edges.push(start..made.edges.len() as u32);
+        }
+        let mut sides = Vec::with_capacity(border.len());
+        for (n, (end, p)) in border.iter().enumerate() {
+            let [p, q] = [id(*p), id(border[(n + 1) % border.len()].1)];
+            if p != q {
+                made.edges.push([p, q]);
+                made.edge_lines.push(NONE);
+                sides.push(end.side);
+            }
+        }
+        made.lines = self.lines;
+        made.vertices = self.vertices;
+        made.rows_below = self.rows_below;
+        let next = made.link(&sides);
+        made.find_faces(&next, sides.len());
+        made
+    }
+
+    /// Takes merged vertices out, the others keep their order; the new id of each, nothing when all stay.
+    fn drop_merged(&mut self) -> Vec<u32> {
+        let mut ids = vec![0u32; self.same.len()];
         let mut kept = 0;
         for n in 0..ids.len() {
             let root = self.root(n as u32) as usize;
@@ -401,40 +475,11 @@ impl Builder {
                 kept += 1;
             }
         }
-        self.vertices.truncate(kept as usize);
-        self.rows_below.truncate(kept as usize);
-
-        let mut made = Arrangement { lines: self.lines, ..Arrangement::default() };
-        let mut ranks: Vec<[u32; 2]> = Vec::new();
-        let (line_ranks, border_ranks) = rank(&made.lines);
-        for (n, chain) in chains.iter().enumerate() {
-            let start = made.edges.len() as u32;
-            for pair in chain.windows(2) {
-                let [p, q] = [ids[pair[0] as usize], ids[pair[1] as usize]];
-                if p != q {
-                    made.edges.push([p, q]);
-                    made.edge_lines.push(n as u32);
-                    ranks.push(line_ranks[n]);
-                }
-            }
-            made.line_edges.push(start..made.edges.len() as u32);
+        if !ids.is_empty() {
+            self.vertices.truncate(kept as usize);
+            self.rows_below.truncate(kept as usize);
         }
-        let round = border.iter().chain(border.first());
-        let round: Vec<(u8, u32)> = round.map(|(end, id)| (end.side, ids[*id as usize])).collect();
-        for pair in round.windows(2) {
-            let [(side, p), (_, q)] = [pair[0], pair[1]];
-            if p != q {
-                made.edges.push([p, q]);
-                made.edge_lines.push(NONE);
-                let side = usize::from(side);
-                ranks.push([border_ranks[side], border_ranks[(side + 2) % 4]]);
-            }
-        }
-        made.vertices = self.vertices;
-        made.rows_below = self.rows_below;
-        made.link(&ranks);
-        made.find_faces();
-        made
+        ids
     }
 }
 
@@ -484,63 +529,92 @@ impl Arrangement {
         self.edges[(half >> 1) as usize][(half & 1) as usize]
     }
 
-    /// Half-edges around the face that `first` has on its left, from `first` on.
-    pub fn cycle(&self, first: u32) -> impl Iterator<Item = u32> + '_ {
-        let step = move |&half: &u32| Some(self.next[half as usize]).filter(|&next| next != first);
-        std::iter::successors(Some(first), step)
+    /// Face on the left of a half-edge, [`NONE`] outside.
+    #[must_use]
+    pub fn face(&self, half: u32) -> u32 {
+        self.edge_faces[(half >> 1) as usize][(half & 1) as usize]
     }
 
-    /// Sorts the half-edges around each vertex and links each to the next around its face.
-    fn link(&mut self, ranks: &[[u32; 2]]) {
-        let halves = self.edges.len() * 2;
-        let rank = |half: u32| ranks[(half >> 1) as usize][(half & 1) as usize];
-        let mut starts = vec![0u32; self.vertices.len() + 1];
-        for half in 0..halves as u32 {
-            starts[self.start(half) as usize + 1] += 1;
+    /// Number of faces, without the outside.
+    #[must_use]
+    pub fn face_count(&self) -> usize {
+        self.face_offsets.len().saturating_sub(1)
+    }
+
+    /// Half-edges of a face, counter-clockwise.
+    #[must_use]
+    pub fn around(&self, face: usize) -> &[u32] {
+        &self.face_halves[self.face_offsets[face] as usize..self.face_offsets[face + 1] as usize]
+    }
+
+    /// The next half-edge around the face on the left of each. `sides` are those that the border's edges lie on.
+    fn link(&self, sides: &[u8]) -> Vec<u32> {
+        let (line_ranks, border_ranks) = rank(&self.lines);
+        let first_border = self.edges.len() - sides.len();
+        // Handed out in the order of their ranks, the ways out of every vertex come sorted.
+        let mut groups: Vec<(u32, std::ops::Range<u32>, u32)> = Vec::new();
+        for (ranks, edges) in line_ranks.iter().zip(&self.line_edges).filter(|(_, edges)| !edges.is_empty()) {
+            groups.extend([(ranks[0], edges.clone(), 0), (ranks[1], edges.clone(), 1)]);
         }
-        for n in 1..starts.len() {
-            starts[n] += starts[n - 1];
+        for (edge, &side) in (first_border as u32..).zip(sides) {
+            let side = usize::from(side);
+            groups.push((border_ranks[side], edge..edge + 1, 0));
+            groups.push((border_ranks[(side + 2) % 4], edge..edge + 1, 1));
         }
-        let mut fill = starts.clone();
-        let mut out = vec![0u32; halves];
-        for half in 0..halves as u32 {
-            let at = &mut fill[self.start(half) as usize];
-            out[*at as usize] = half;
-            *at += 1;
-        }
-        self.next = vec![0; halves];
-        for pair in starts.windows(2) {
-            let ways = &mut out[pair[0] as usize..pair[1] as usize];
-            ways.sort_unstable_by_key(|&half| rank(half));
-            // Arriving against a way out, the face on the left goes on along the next way clockwise.
-            for n in 0..ways.len() {
-                let clockwise = ways[(n + ways.len() - 1) % ways.len()];
-                self.next[Self::twin(ways[n]) as usize] = clockwise;
+        groups.sort_by_key(|group| group.0);
+
+        // Arriving against a way out, the face on the left goes on along the next way clockwise: the one before.
+        let mut next = vec![0; self.edges.len() * 2];
+        let mut ways = vec![[NONE; 2]; self.vertices.len()];
+        for (_, edges, way) in groups {
+            for edge in edges {
+                let half = 2 * edge + way;
+                let [first, last] = &mut ways[self.start(half) as usize];
+                if *first == NONE {
+                    *first = half;
+                } else {
+                    next[Self::twin(half) as usize] = *last;
+                }
+                *last = half;
             }
         }
+        for [first, last] in ways.into_iter().filter(|ways| ways[0] != NONE) {
+            next[Self::twin(first) as usize] = last;
+        }
+        next
     }
 
-    fn find_faces(&mut self) {
-        let halves = self.edges.len() as u32 * 2;
-        let mut seen = vec![false; halves as usize];
-        self.faces = vec![NONE; halves as usize];
-        let first_border = self.edge_lines.iter().position(|&line| line == NONE).unwrap_or(0) as u32;
+    /// Numbers the faces, in the order of their first half-edges; the last `border` edges are the border's.
+    fn find_faces(&mut self, next: &[u32], border: usize) {
+        let halves = next.len() as u32;
+        let first_border = halves - 2 * border as u32;
+        // Euler: all hangs together by the border.
+        self.face_offsets.reserve_exact((self.edges.len() + 2).saturating_sub(self.vertices.len()));
+        self.face_offsets.push(0);
+        self.face_halves.reserve_exact(next.len() - border);
+        self.edge_faces = vec![[0; 2]; self.edges.len()];
+        let mut seen = vec![0u64; next.len().div_ceil(64)];
         for start in 0..halves {
-            if seen[start as usize] {
+            // The outside runs along the border's twins only.
+            if start >= first_border && start & 1 == 1 {
+                self.edge_faces[(start >> 1) as usize][1] = NONE;
                 continue;
             }
-            // The outside runs along the border's twins only.
-            let outside = start >= 2 * first_border && start & 1 == 1;
-            let face = if outside { NONE } else { self.face_starts.len() as u32 };
+            if seen[(start >> 6) as usize] >> (start & 63) & 1 == 1 {
+                continue;
+            }
+            let face = self.face_offsets.len() as u32 - 1;
             let mut half = start;
-            while !seen[half as usize] {
-                seen[half as usize] = true;
-                self.faces[half as usize] = face;
-                half = self.next[half as usize];
+            loop {
+                seen[(half >> 6) as usize] |= 1 << (half & 63);
+                self.edge_faces[(half >> 1) as usize][(half & 1) as usize] = face;
+                self.face_halves.push(half);
+                half = next[half as usize];
+                if half == start {
+                    break;
+                }
             }
-            if !outside {
-                self.face_starts.push(start);
-            }
+            self.face_offsets.push(self.face_halves.len() as u32);
         }
     }
 }

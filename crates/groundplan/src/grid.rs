@@ -178,7 +178,14 @@ pub fn turned(angle: f64) -> f64 {
 /// Rounded to micrometres (or millionths): finer than any map means, and short to write.
 #[must_use]
 pub fn tidy(value: f64) -> f64 {
-    (value * 1e6).round() / 1e6 + 0.0
+    // As `f64::round` does, without the call that it is on machines that may lack the instruction, and without a
+    // branch that nobody can foretell: this is asked of every coordinate of millions.
+    let micro = value * 1e6;
+    let whole = micro as i64 as f64;
+    let rest = micro - whole;
+    let rounded = whole + f64::from(u8::from(rest >= 0.5)) - f64::from(u8::from(rest <= -0.5));
+    // From 2^52 on every float is whole.
+    (if micro.abs() < 4_503_599_627_370_496.0 { rounded } else { micro }) / 1e6 + 0.0
 }
 
 /// An angle rounded to a billionth of a radian: a micrometre at a kilometre.

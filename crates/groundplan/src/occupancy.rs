@@ -72,8 +72,8 @@ pub fn find_occupancy(
     // A sliver between the pixels' centres has no pixels: it is what the pixel under its middle is.
     let evidence: Vec<Sums> = sums
         .iter()
-        .zip(&arrangement.face_starts)
-        .map(|(sums, &first)| if sums.pixels > 0 { *sums } else { pixel_under(grid, arrangement, first) })
+        .enumerate()
+        .map(|(face, sums)| if sums.pixels > 0 { *sums } else { pixel_under(grid, arrangement, face) })
         .collect();
     let share = |part: i64, of: i64| tidy(part as f64 / of as f64);
     let faces: Vec<f64> = evidence.iter().map(|s| share(s.percent, 100 * s.pixels)).collect();
@@ -101,9 +101,9 @@ pub fn find_occupancy(
 }
 
 /// The pixel that the middle of a face's vertices lies in.
-fn pixel_under(grid: &Grid, arrangement: &Arrangement, first: u32) -> Sums {
+fn pixel_under(grid: &Grid, arrangement: &Arrangement, face: usize) -> Sums {
     let (mut count, mut x, mut y) = (0.0, 0.0, 0.0);
-    for half in arrangement.cycle(first) {
+    for &half in arrangement.around(face) {
         let [vx, vy] = arrangement.vertices[arrangement.start(half) as usize];
         (count, x, y) = (count + 1.0, x + vx, y + vy);
     }
@@ -136,7 +136,7 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, threads: usize) -> Vec<Sums
         free: (sum >> 88) as i64,
         pixels,
     };
-    let empty = || vec![Sums::default(); arrangement.face_starts.len()];
+    let empty = || vec![Sums::default(); arrangement.face_count()];
     fold_bands(
         height,
         threads,
@@ -153,7 +153,7 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, threads: usize) -> Vec<Sums
                 crossings.of_row(arrangement, y, width, |half, column| {
                     let sums = unpack(left[column], column as i64);
                     for (half, sign) in [(half, 1), (Arrangement::twin(half), -1)] {
-                        let face = arrangement.faces[half as usize];
+                        let face = arrangement.face(half);
                         if face != NONE {
                             let total = &mut totals[face as usize];
                             total.percent += sign * sums.percent;

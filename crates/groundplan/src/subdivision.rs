@@ -29,37 +29,33 @@ pub struct Subdivision {
 }
 
 impl Subdivision {
-    /// From an arrangement, with coordinates in the map frame.
+    /// From an arrangement, with coordinates in the map frame. Takes its lists over: they are most of the memory.
     #[must_use]
-    pub fn new(frame: &Frame, arrangement: &Arrangement) -> Self {
-        let vertices: Vec<[f64; 2]> = arrangement.vertices.iter().map(|&v| frame.to_metres(v).map(tidy)).collect();
-        let edge_faces = arrangement.faces.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
-        let faces = arrangement.face_starts.len();
-        let mut made = Self {
-            vertices,
-            edge_vertices: arrangement.edges.clone(),
-            edge_lines: arrangement.edge_lines.clone(),
-            edge_faces,
-            face_vertices: Vec::with_capacity(4 * faces),
-            face_edges: Vec::with_capacity(4 * faces),
-            face_offsets: vec![0],
-            centres: Vec::with_capacity(faces),
-            areas: Vec::with_capacity(faces),
-            map_area: frame.width as f64 * frame.height as f64 * frame.resolution.powi(2),
-        };
-        for &first in &arrangement.face_starts {
-            let start = made.face_vertices.len();
-            for half in arrangement.cycle(first) {
-                made.face_vertices.push(arrangement.start(half));
-                made.face_edges.push(half >> 1);
-            }
-            made.face_offsets.push(made.face_vertices.len() as u32);
+    pub fn new(frame: &Frame, arrangement: Arrangement) -> Self {
+        let faces = arrangement.face_count();
+        let vertices = arrangement.vertices.iter().map(|&v| frame.to_metres(v).map(tidy)).collect();
+        let mut face_vertices = Vec::with_capacity(arrangement.face_halves.len());
+        let (mut centres, mut areas) = (Vec::with_capacity(faces), Vec::with_capacity(faces));
+        for face in 0..faces {
+            let start = face_vertices.len();
+            face_vertices.extend(arrangement.around(face).iter().map(|&half| arrangement.start(half)));
             // From the vertices before they are rounded: a sliver's centre is lost with the rounding.
-            let (area, centre) = area_and_centroid(&arrangement.vertices, &made.face_vertices[start..]);
-            made.areas.push(tidy(area * frame.resolution.powi(2)));
-            made.centres.push(frame.to_metres(centre).map(tidy));
+            let (area, centre) = area_and_centroid(&arrangement.vertices, &face_vertices[start..]);
+            areas.push(tidy(area * frame.resolution.powi(2)));
+            centres.push(frame.to_metres(centre).map(tidy));
         }
-        made
+        Self {
+            vertices,
+            edge_vertices: arrangement.edges,
+            edge_lines: arrangement.edge_lines,
+            edge_faces: arrangement.edge_faces,
+            face_vertices,
+            face_edges: arrangement.face_halves.into_iter().map(|half| half >> 1).collect(),
+            face_offsets: arrangement.face_offsets,
+            centres,
+            areas,
+            map_area: frame.width as f64 * frame.height as f64 * frame.resolution.powi(2),
+        }
     }
 
     /// Number of faces.
@@ -200,14 +196,13 @@ const THINNEST_PIXELS: f64 = 1e-9;
 fn area_and_centroid(points: &[[f64; 2]], polygon: &[u32]) -> (f64, [f64; 2]) {
     // Relative to the first vertex: far from the map frame's origin, differences of large products say little.
     let [ox, oy] = points[polygon[0] as usize];
-    let at = |n: usize| {
-        let [x, y] = points[polygon[n % polygon.len()] as usize];
-        [x - ox, y - oy]
-    };
     let (mut twice, mut cx, mut cy) = (0.0, 0.0, 0.0);
     let (mut mx, mut my, mut reach) = (0.0, 0.0, 0.0f64);
-    for n in 0..polygon.len() {
-        let ([x0, y0], [x1, y1]) = (at(n), at(n + 1));
+    let (mut x1, mut y1) = (0.0, 0.0);
+    for n in 1..=polygon.len() {
+        let (x0, y0) = (x1, y1);
+        let [x, y] = points[polygon[if n < polygon.len() { n } else { 0 }] as usize];
+        (x1, y1) = (x - ox, y - oy);
         let cross = x0 * y1 - x1 * y0;
         twice += cross;
         cx += (x0 + x1) * cross;

@@ -67,7 +67,7 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
     let radiograms = find_radiograms(frame, &gradients, &directions, parameters);
     let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
     let arrangement = arrange(frame, &directions.angles, &lines);
-    let subdivision = Subdivision::new(frame, &arrangement);
+    let subdivision = Subdivision::new(frame, arrangement.clone());
     let occupancy = find_occupancy(grid, &arrangement, &directions, &lines, &gradients, parameters, threads);
     let walls = find_walls(&subdivision, &occupancy, parameters);
     let adjacency = find_adjacency(&subdivision, &walls);

@@ -145,7 +145,7 @@ impl Case {
             min_amplitude: 0.0,
         };
         let arrangement = arrange(&self.frame, &self.angles, &lines);
-        let subdivision = Subdivision::new(&self.frame, &arrangement);
+        let subdivision = Subdivision::new(&self.frame, arrangement.clone());
         Arranged { arrangement, subdivision }
     }
 
@@ -284,7 +284,7 @@ fn check_counts(frame: &Frame, arrangement: &Arrangement) -> Result<(), String> 
     let through: usize = inner.values().map(BTreeSet::len).sum();
     let expected =
         [inner.len() + border.len(), lines.len() + through + border.len(), 1 + lines.len() + through - inner.len()];
-    let found = [arrangement.vertices.len(), arrangement.edges.len(), arrangement.face_starts.len()];
+    let found = [arrangement.vertices.len(), arrangement.edges.len(), arrangement.face_count()];
     if found == expected { Ok(()) } else { Err(format!("vertices, edges, faces are {found:?} and not {expected:?}")) }
 }
 
@@ -292,21 +292,31 @@ fn check_counts(frame: &Frame, arrangement: &Arrangement) -> Result<(), String> 
 fn check_half_edges(arrangement: &Arrangement) -> Result<(), String> {
     let halves = arrangement.edges.len() * 2;
     let mut follows = vec![false; halves];
-    for half in 0..halves as u32 {
-        let next = arrangement.next[half as usize];
+    let inner = (0..arrangement.face_count()).flat_map(|face| {
+        let around = arrangement.around(face);
+        around.iter().zip(around.iter().cycle().skip(1)).map(|(&half, &next)| (half, next))
+    });
+    // The outside runs along the border's twins, the other way round.
+    let border: Vec<u32> =
+        (0..halves as u32).filter(|&h| arrangement.edge_lines[h as usize / 2] == NONE && h % 2 == 1).collect();
+    let outer = border.iter().zip(border.iter().cycle().skip(border.len() - 1)).map(|(&half, &next)| (half, next));
+    for (half, next) in inner.chain(outer) {
         if std::mem::replace(&mut follows[next as usize], true) {
             return Err(format!("half-edge {next} follows two"));
         }
         if arrangement.start(next) != arrangement.start(Arrangement::twin(half)) {
             return Err(format!("half-edge {next} does not start where {half} ends"));
         }
-        if arrangement.faces[half as usize] != arrangement.faces[next as usize] {
+        if arrangement.face(half) != arrangement.face(next) {
             return Err(format!("half-edges {half} and {next} have different faces"));
         }
         let outside = arrangement.edge_lines[half as usize / 2] == NONE && half % 2 == 1;
-        if outside != (arrangement.faces[half as usize] == NONE) {
+        if outside != (arrangement.face(half) == NONE) {
             return Err(format!("half-edge {half} and the outside"));
         }
+    }
+    if follows.contains(&false) {
+        return Err("a half-edge follows none".to_owned());
     }
     Ok(())
 }
