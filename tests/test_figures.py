@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
 import groundplan
 from groundplan import Map, Survey
-from groundplan.figures import _labels, _style, draw_figures, draw_survey
+from groundplan.figures import _labels, _names, _panels, _style, draw_figures, draw_survey
 from groundplan.figures._underlay import underlay
 
 FREE_PIXEL, UNKNOWN_PIXEL, OCCUPIED_PIXEL = 254, 205, 0
@@ -144,7 +145,7 @@ def test_a_door_lies_along_the_wall_that_it_is_in() -> None:
 
 def test_a_name_stands_in_the_widest_gap_between_crossings() -> None:
     line = np.array([[0.0, 0.0], [10.0, 0.0]])
-    middle, room = _labels.widest_gap(line, np.array([[2.0, 0.1], [3.0, 0.0], [5.0, 9.0]]), near=1.0)
+    middle, room = _names.widest_gap(line, np.array([[2.0, 0.1], [3.0, 0.0], [5.0, 9.0]]), near=1.0)
     assert middle.tolist() == [6.5, 0.0]
     assert room == 7.0
 
@@ -152,7 +153,55 @@ def test_a_name_stands_in_the_widest_gap_between_crossings() -> None:
 def test_centre_lines_that_cross_are_known() -> None:
     line = np.array([[0.0, 0.0], [10.0, 0.0]])
     across, parallel, short = ([[4.0, -1.0], [4.0, 1.0]], [[0.0, 1.0], [9.0, 1.0]], [[7.0, 1.0], [7.0, 0.5]])
-    assert _labels.meetings(line, [line, *map(np.array, (across, parallel, short))]).tolist() == [[4.0, 0.0]]
+    assert _names.meetings(line, [line, *map(np.array, (across, parallel, short))]).tolist() == [[4.0, 0.0]]
+
+
+def test_names_do_not_stand_over_one_another() -> None:
+    axes = Figure().add_axes((0, 0, 1, 1))
+    names = _names.Names(axes, dots=10.0)
+    names.take([5.0, 5.0], 8.0, 8.0)
+    square = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]
+    narrow = [[4.9, 4.9], [5.1, 4.9], [5.1, 5.1], [4.9, 5.1]]
+    regions = [{"polygon": square, "at": [5.0, 5.0], "name": "R01", "area": 100.0}]
+    _labels.name_regions([*regions, {"polygon": narrow, "at": [5.0, 5.0], "name": "R02", "area": 0.04}], names)
+    (text,) = axes.texts
+    # The large one steps aside, the one that has no room has no name.
+    assert text.get_text() == "R01"
+    assert text.get_position() != (5.0, 5.0)
+
+
+@pytest.mark.parametrize("width", [2.5, 3.6, 9.0])
+def test_a_header_says_all_of_it_on_any_sheet(width: float) -> None:
+    note = ["99.2 × 99.2 m at 0.05 m", "2 directions (88.2°, −4.9°)", "76 lines", "1265 faces"]
+    lines = _panels.note_lines(note, width)
+    assert " · ".join(lines) == " · ".join(note)
+    room = width - _panels.LEFT - _panels.RIGHT
+    assert all(_panels.text_width(line) <= room for line in lines)
+
+
+@pytest.mark.parametrize("shape", [(700, 100), (100, 700), (300, 300)])
+def test_a_scale_bar_ends_where_the_map_does(shape: tuple[int, int]) -> None:
+    map = groundplan.from_array(np.full(shape, FREE_PIXEL, dtype=np.uint8), 0.05)
+    note = ["a note that is rather long", "and goes on for more", "than a line"]
+    figure, axes, _ = _panels.map_sheet(underlay(map), "title", note, [])
+    (bar,) = axes.lines
+    assert np.asarray(bar.get_xdata()).max() == 1.0
+    # Nothing is written where it stands.
+    figure.draw_without_rendering()
+    place = bar.get_window_extent()
+    assert not any(text.get_window_extent().overlaps(place) for text in figure.texts)
+
+
+def test_black_all_around_and_specks_far_out_are_not_shown() -> None:
+    picture = np.full((600, 800), OCCUPIED_PIXEL, dtype=np.uint8)
+    picture[200:400, 300:500] = FREE_PIXEL
+    view = underlay(groundplan.from_array(picture, 0.05), margin=0.0)
+    assert view.extent == pytest.approx((15.0, 25.0, 10.0, 20.0), abs=0.16)
+    assert (view.ranks[0] == 2).all()
+    picture[picture == OCCUPIED_PIXEL] = UNKNOWN_PIXEL
+    picture[3, 5] = picture[590, 795] = OCCUPIED_PIXEL
+    speckled = underlay(groundplan.from_array(picture, 0.05), margin=0.0)
+    assert speckled.extent == pytest.approx(view.extent, abs=0.16)
 
 
 def test_walls_a_pixel_wide_outlive_the_reduction() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,11 +15,11 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
-from matplotlib.patheffects import withStroke
 from matplotlib.textpath import TextPath
 from matplotlib.transforms import IdentityTransform
 
 from groundplan.figures import _style as ink
+from groundplan.figures._names import Names, meetings, widest_gap
 from groundplan.survey import Label, Survey
 
 Points = npt.NDArray[np.float64]
@@ -28,18 +27,24 @@ Points = npt.NDArray[np.float64]
 JUNCTION_NAMES = {"X": "X junction", "T": "T junction", "L": "L corner", "Y": "Y junction", "end": "Dead end"}
 #: Sizes of type along a corridor, points: it is left out where even the least does not fit.
 LEAST_TYPE, GREATEST_TYPE = 4.5, 9.0
+#: Of a region's name, the second where the first does not fit.
+REGION_TYPE = (6.5, 5.0)
 
 
 def draw_labels(axes: Axes, survey: Survey) -> None:
     """Draw every label, the large beneath the small."""
     kinds = {kind: survey.of_kind(kind) for kind in ("region", "rack", "corridor", "junction", "door", "pillar")}
     dots = points_per_metre(axes)
-    draw_regions(axes, kinds["region"], bool(kinds["corridor"]))
+    names = Names(axes, dots)
+    draw_regions(axes, kinds["region"])
     draw_racks(axes, kinds["rack"])
-    draw_corridors(axes, kinds["corridor"], kinds["junction"], dots)
     draw_doors(axes, kinds["door"], survey)
     draw_pillars(axes, kinds["pillar"])
-    draw_junctions(axes, kinds["junction"], kinds["corridor"], dots)
+    draw_junctions(axes, kinds["junction"], kinds["corridor"], names)
+    draw_corridors(axes, kinds["corridor"], kinds["junction"], names)
+    # Corridors have names of their own, in the same place.
+    ways = bool(kinds["corridor"])
+    name_regions([label for label in kinds["region"] if not (ways and label.get("use") == "corridor")], names)
 
 
 def draw_walls(axes: Axes, survey: Survey, width: float = 1.1) -> None:
@@ -83,18 +88,29 @@ def points_per_metre(axes: Axes) -> float:
     return float(box.width / axes.figure.dpi * 72 / (high - low))
 
 
-def draw_regions(axes: Axes, regions: Sequence[Label], named: bool) -> None:
-    """Thin outlined tints with a name, holes left out; `named` when corridors have theirs."""
+def draw_regions(axes: Axes, regions: Sequence[Label]) -> None:
+    """Thin outlined tints, holes left out."""
     for number, region in enumerate(regions):
         # What winds the other way is left out of the tint.
         holes = [wound(hole, -1) for hole in region.get("holes", [])]
         path = Path.make_compound_path(*(closed(ring) for ring in (wound(region["polygon"], 1), *holes)))
         fill = ink.REGIONS[number % len(ink.REGIONS)]
-        patch = PathPatch(path, facecolor=to_rgba(fill, 0.2), edgecolor=to_rgba(fill, 0.9), lw=0.7, zorder=1)
+        patch = PathPatch(path, facecolor=to_rgba(fill, 0.2), edgecolor=to_rgba(fill, 0.8), lw=0.5, zorder=1)
         axes.add_patch(patch)
-        # Corridors have names of their own, in the same place.
-        if region.get("name") and not (named and region.get("use") == "corridor"):
-            write(axes, region["at"], region["name"], 6.5, colour=ink.INK, zorder=8)
+
+
+def name_regions(regions: Sequence[Label], names: Names) -> None:
+    """Names where there is room for them, those of large regions first."""
+    line = 1.15 * REGION_TYPE[0] / names.dots
+    for region in sorted(regions, key=lambda region: -float(region.get("area", 0))):
+        name, inside = region.get("name"), closed(np.asarray(region["polygon"], dtype=np.float64))
+        if not name:
+            continue
+        near = [np.add(region["at"], [0.0, rows * line]) for rows in (0, 1, -1, 2, -2)]
+        room = [(at, size) for size in REGION_TYPE for at in near if names.fits(at, name, size)]
+        # The place that it has is in it; another has to be.
+        if found := next((r for r in room if r[0] is near[0] or inside.contains_point((r[0][0], r[0][1]))), None):
+            names.write(found[0], name, found[1], ink.INK, 8)
 
 
 def wound(ring: Sequence[Sequence[float]], side: int) -> Points:
@@ -123,7 +139,7 @@ def draw_racks(axes: Axes, racks: Sequence[Label]) -> None:
     axes.add_collection(collection, autolim=False)
 
 
-def draw_corridors(axes: Axes, corridors: Sequence[Label], junctions: Sequence[Label], dots: float) -> None:
+def draw_corridors(axes: Axes, corridors: Sequence[Label], junctions: Sequence[Label], names: Names) -> None:
     """Translucent polygons with their centre lines, and their names along these."""
     # One shape for them all: where two cross, the tint is no deeper.
     rings = [closed(wound(label["polygon"], 1)) for label in corridors if label.get("polygon")]
@@ -143,69 +159,18 @@ def draw_corridors(axes: Axes, corridors: Sequence[Label], junctions: Sequence[L
             continue
         stops = np.concatenate([crossings, meetings(line, lines)])
         middle, room = widest_gap(line, stops, 0.75 * corridor["width"])
-        size = min(0.62 * corridor["width"] * dots, room * dots / (0.72 * len(name)), GREATEST_TYPE)
+        size = min(0.62 * corridor["width"] * names.dots, room * names.dots / (0.72 * len(name)), GREATEST_TYPE)
         if size >= LEAST_TYPE:
             angle = math.degrees(math.atan2(*(line[-1] - line[0])[::-1]))
-            write(axes, middle, name, size, ink.CORRIDOR_INK, 7, (angle + 90.001) % 180 - 90.001)
+            names.write(middle, name, size, ink.CORRIDOR_INK, 7, (angle + 90.001) % 180 - 90.001)
 
 
-def meetings(line: Points, others: Sequence[Points]) -> Points:
-    """Where a centre line crosses others, (N, 2)."""
-    ends = np.array([[other[0], other[-1]] for other in others])
-    start, along = line[0], line[-1] - line[0]
-    theirs, apart = ends[:, 1] - ends[:, 0], ends[:, 0] - start
-    turn = along[0] * theirs[:, 1] - along[1] * theirs[:, 0]
-    some = np.abs(turn) > 1e-9
-    theirs, apart, turn = theirs[some], apart[some], turn[some]
-    mine = (apart[:, 0] * theirs[:, 1] - apart[:, 1] * theirs[:, 0]) / turn
-    other = (apart[:, 0] * along[1] - apart[:, 1] * along[0]) / turn
-    both = (mine >= 0) & (mine <= 1) & (other >= 0) & (other <= 1)
-    points: Points = start + mine[both, None] * along
-    return points
-
-
-def widest_gap(line: Points, crossings: Points, near: float) -> tuple[Points, float]:
-    """Where along a centre line a name has most room between crossings: the place, and the room in metres."""
-    start, along = line[0], line[-1] - line[0]
-    length = float(np.hypot(*along))
-    if length == 0:
-        return start, 0.0
-    unit = along / length
-    relative = crossings - start
-    at, aside = relative @ unit, relative @ np.array([-unit[1], unit[0]])
-    on = at[(np.abs(aside) <= near) & (at > -near) & (at < length + near)]
-    stops = np.sort(np.concatenate([[0.0], np.clip(on, 0, length), [length]]))
-    gaps = np.diff(stops)
-    # Of gaps about as wide as the widest, the one nearest the middle: names in a row of aisles then line up.
-    middles = (stops[1:] + stops[:-1]) / 2
-    wide = gaps >= 0.85 * gaps.max()
-    best = np.flatnonzero(wide)[np.argmin(np.abs(middles[wide] - length / 2))]
-    return start + middles[best] * unit, float(gaps[best])
-
-
-def write(axes: Axes, at: Any, text: str, size: float, colour: str, zorder: float, angle: float = 0.0) -> None:
-    """Write centred on a place, with a light seam that keeps it legible on anything."""
-    seam = [withStroke(linewidth=max(1.2, 0.28 * size), foreground=(1, 1, 1, 0.85))]
-    axes.text(
-        at[0],
-        at[1],
-        text,
-        size=size,
-        color=colour,
-        ha="center",
-        va="center_baseline",
-        rotation=angle,
-        rotation_mode="anchor",
-        zorder=zorder,
-        clip_on=True,
-        path_effects=seam,
-    )
-
-
-def draw_junctions(axes: Axes, junctions: Sequence[Label], corridors: Sequence[Label], dots: float) -> None:
+def draw_junctions(axes: Axes, junctions: Sequence[Label], corridors: Sequence[Label], names: Names) -> None:
     """Discs in the colour of their type, with its letter where there is room."""
     widths = [corridor["width"] for corridor in corridors] or [2.5]
-    size = float(np.clip(0.7 * np.quantile(widths, 0.75) * dots, 4.5, 11.0))
+    size = float(np.clip(0.7 * np.quantile(widths, 0.75) * names.dots, 4.5, 11.0))
+    for label in junctions:
+        names.take(label["at"], size, size)
     for kind, fill in ink.JUNCTIONS.items():
         at = np.array([label["at"] for label in junctions if label["type"] == kind], dtype=np.float64)
         if not len(at):
@@ -253,7 +218,7 @@ def draw_doors(axes: Axes, doors: Sequence[Label], survey: Survey) -> None:
         along = door_direction(door, at, survey) * max(float(door["width"]), 1e-6) / 2
         strokes.append(np.stack([at - along, at + along]))
     axes.add_collection(
-        LineCollection(strokes, colors=ink.DOOR, linewidths=3, capstyle="butt", zorder=6), autolim=False
+        LineCollection(strokes, colors=ink.DOOR, linewidths=2.4, capstyle="butt", zorder=6), autolim=False
     )
 
 

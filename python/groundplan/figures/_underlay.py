@@ -23,6 +23,8 @@ LONGEST = 2400
 RANKS = {states.UNKNOWN: 0, states.FREE: 1, states.OCCUPIED: 2}
 COLOURS = (np.array([to_rgb(c) for c in (UNKNOWN, FREE, OCCUPIED)]) * 255).round().astype(np.uint8)
 BAND_ROWS = 1024
+#: Of the known pixels, this share may lie outside of what is shown, on each side.
+SPECKS = 2e-4
 
 
 @dataclass(frozen=True)
@@ -98,39 +100,58 @@ def underlay(map: Map, longest: int = LONGEST, margin: float = 0.025) -> Underla
     for state, rank in RANKS.items():
         table[map.states == state] = rank
     top, bottom, first, last = known(map, table)
-    rows, columns = bottom - top, int(last.max()) - int(first.min())
-    block = max(1, math.ceil(max(rows, columns) / longest))
-    ranks = reduced(map.pixels[top:bottom, int(first.min()) : int(last.max())], table, block)
+    left, right = int(first.min()), int(last.max())
+    longer = max(bottom - top, right - left)
+    block = max(1, math.ceil(longer / longest))
+    spare = max(1, round(margin * longer / block)) * block
+    # In the margin the map goes on, whole blocks away from what is known.
+    above, before = (min(spare, start // block * block) for start in (top, left))
+    window = map.pixels[top - above : bottom + spare, left - before : right + spare]
+    ranks = reduced(window, table, block)
     # The picture hangs from its top left corner: its last row and column may stand out over the map's.
-    corner = int(first.min()) * map.resolution, (map.height - top - len(ranks) * block) * map.resolution
-    spare = max(1, round(margin * max(rows, columns) / block)) * block
+    corner = (left - before) * map.resolution, (map.height - top + above - len(ranks) * block) * map.resolution
     edge = outline(map, first, last, top)
     x0, x1, y0, y1 = box(edge)
     # As many whole blocks as it takes, so that a block of the picture can be a whole number of dots.
     step, spare_m = block * map.resolution, spare * map.resolution
     wide, high = (math.ceil((size + 2 * spare_m) / step - 1e-6) * step for size in (x1 - x0, y1 - y0))
-    left, below = x0 - spare_m, y1 + spare_m - high
-    extent = (left, left + wide, below, below + high)
+    west, south = x0 - spare_m, y1 + spare_m - high
+    extent = (west, west + wide, south, south + high)
     return Underlay(ranks, block, map.resolution, corner, map.origin, extent, edge)
 
 
 def known(map: Map, table: npt.NDArray[np.uint8]) -> tuple[int, int, npt.NDArray[np.int64], npt.NDArray[np.int64]]:
     """Rows of the map with known pixels, and in each of them the first known column and that after the last.
 
-    Without any known pixel it is the whole map. Rows between that hold none are given as empty in the middle.
+    Known are free pixels and the sides of what is occupied: a map may be black all around. A few specks far out do not
+    count. Without any known pixel it is the whole map. Rows between that hold none are given as empty in the middle.
     """
     first, last = np.full(map.height, map.width, dtype=np.int64), np.zeros(map.height, dtype=np.int64)
+    in_row, in_column = np.zeros(map.height, dtype=np.int64), np.zeros(map.width, dtype=np.int64)
     for start in range(0, map.height, BAND_ROWS):
-        seen = table[map.pixels[start : start + BAND_ROWS]] > 0
+        ranks = table[map.pixels[start : start + BAND_ROWS]]
+        seen, changes = ranks == RANKS[states.FREE], ranks[:, 1:] != ranks[:, :-1]
+        taken = ranks == RANKS[states.OCCUPIED]
+        seen[:, 1:] |= changes & taken[:, 1:]
+        seen[:, :-1] |= changes & taken[:, :-1]
         some = seen.any(axis=1)
         band = slice(start, start + len(seen))
         first[band] = np.where(some, seen.argmax(axis=1), map.width)
         last[band] = np.where(some, map.width - seen[:, ::-1].argmax(axis=1), 0)
-    found = np.flatnonzero(last)
-    if not len(found):
+        in_row[band] = seen.sum(axis=1)
+        in_column += seen.sum(axis=0)
+    if not in_row.any():
         return 0, map.height, np.zeros(map.height, np.int64), np.full(map.height, map.width, np.int64)
-    top, bottom = int(found[0]), int(found[-1]) + 1
-    return top, bottom, first[top:bottom], last[top:bottom]
+    (top, bottom), (left, right) = without_specks(in_row), without_specks(in_column)
+    first, last = np.maximum(first, left)[top:bottom], np.minimum(last, right)[top:bottom]
+    empty = first >= last
+    return top, bottom, np.where(empty, map.width, first), np.where(empty, 0, last)
+
+
+def without_specks(counts: npt.NDArray[np.int64]) -> tuple[int, int]:
+    """From and to of what counts: outside, to either side, lies less than a `SPECKS` share of all."""
+    sums, least = counts.cumsum(), int(SPECKS * counts.sum())
+    return int(np.searchsorted(sums, least, side="right")), int(np.searchsorted(sums, sums[-1] - least)) + 1
 
 
 def outline(map: Map, first: npt.NDArray[np.int64], last: npt.NDArray[np.int64], top: int) -> npt.NDArray[np.float64]:
