@@ -163,7 +163,7 @@ def test_names_do_not_stand_over_one_another() -> None:
     square = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]
     narrow = [[4.9, 4.9], [5.1, 4.9], [5.1, 5.1], [4.9, 5.1]]
     regions = [{"polygon": square, "at": [5.0, 5.0], "name": "R01", "area": 100.0}]
-    _labels.name_regions([*regions, {"polygon": narrow, "at": [5.0, 5.0], "name": "R02", "area": 0.04}], names)
+    _labels.name_regions([*regions, {"polygon": narrow, "at": [5.0, 5.0], "name": "R02", "area": 0.04}], [], names)
     (text,) = axes.texts
     # The large one steps aside, the one that has no room has no name.
     assert text.get_text() == "R01"

@@ -830,3 +830,25 @@ def test_a_share_that_rounds_to_nothing_is_not_said_to_be_nothing() -> None:
     from groundplan.maps._warnings import percent
 
     assert [percent(share) for share in (0.0, 0.0001, 0.001, 0.5)] == ["0.0 %", "less than 0.1 %", "0.1 %", "50.0 %"]
+
+
+def room_with_walls(greys: tuple[int, int], tmp_path: Path) -> Map:
+    """A room whose walls are of many greys, from the one to the other, in an outside of 180."""
+    pixels = np.full((200, 300), 180, np.uint8)
+    random = np.random.default_rng(1)
+    pixels[40:160, 40:260] = random.integers(*greys, (120, 220))
+    pixels[43:157, 43:257] = 254
+    # Something else is dark enough.
+    pixels[170:195, 20:280] = random.integers(10, 80, (25, 260))
+    write_pgm(tmp_path / "map.pgm", pixels)
+    return read(write_yaml(tmp_path, occupied_thresh="0.65", free_thresh="0.02"))
+
+
+def test_walls_that_count_as_unknown_are_told(tmp_path: Path) -> None:
+    got = room_with_walls((95, 150), tmp_path)
+    assert codes(got) == ["walls-as-unknown"]
+    assert "; --occupied-thresh 0.36 would" in message(got, "walls-as-unknown")
+    mended = read(tmp_path / "map.yaml", occupied_thresh=0.36)
+    assert (states(mended)[41, 41:259] == OCCUPIED).all()
+    assert codes(mended) == []
+    assert codes(room_with_walls((10, 80), tmp_path)) == []

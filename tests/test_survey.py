@@ -176,6 +176,13 @@ def test_parameters_in_force_are_kept() -> None:
     assert found.parameters["directions.count"] is None
 
 
+def test_without_ways_it_is_said_what_was_sought() -> None:
+    found = groundplan.survey(ZOO["single_room"](), resolution=RESOLUTION, labels_min_width=7.5)
+    said = {warning.code: warning.message for warning in found.warnings}
+    assert "regions: 1" in said["no-labels"]
+    assert "labels.min_width = 7.5 to labels.max_width = 8 m" in said["no-labels"]
+
+
 def test_what_is_wrong_is_said_by_name() -> None:
     picture = ZOO["single_room"]()
     with pytest.raises(ParameterError, match=r"lines\.snt") as unknown:

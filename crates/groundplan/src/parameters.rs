@@ -267,11 +267,20 @@ impl Parameter {
 }
 
 fn unknown(name: &str) -> ParameterError {
-    let nearest = TABLE.iter().min_by_key(|row| edits(row.name, name)).map_or("", |row| row.name);
+    // The part behind the dot is what people remember.
+    let last = |name: &'_ str| name.rsplit('.').next().unwrap_or_default().to_owned();
+    let nearest = TABLE
+        .iter()
+        .map(|row| (edits(row.name, name).min(edits(&last(row.name), name) + 1), row.name))
+        .min()
+        .filter(|&(apart, _)| 3 * apart <= name.chars().count());
     ParameterError {
         code: "parameter.unknown",
         message: format!("there is no parameter {name}"),
-        hint: format!("did you mean {nearest}?"),
+        hint: nearest.map_or_else(
+            || "groundplan parameters lists them all".to_owned(),
+            |(_, nearest)| format!("did you mean {nearest}?"),
+        ),
     }
 }
 
@@ -332,6 +341,17 @@ mod tests {
     fn an_unknown_name_gives_the_nearest() {
         let fault = Parameters::default().set("lines.snt", Value::Number(3.0)).unwrap_err();
         assert_eq!((fault.code, fault.hint.as_str()), ("parameter.unknown", "did you mean lines.snr?"));
+        let hint = |name| Parameters::default().set(name, Value::Auto).unwrap_err().hint;
+        assert_eq!(hint("disparity"), "did you mean walls.disparity?");
+        assert_eq!(hint("line.detail"), "did you mean lines.detail?");
+    }
+
+    #[test]
+    fn a_name_like_none_gives_no_other() {
+        for name in ["", "x", "banana", "how.many.robots"] {
+            let fault = Parameters::default().set(name, Value::Number(3.0)).unwrap_err();
+            assert_eq!(fault.hint, "groundplan parameters lists them all", "{name}");
+        }
     }
 
     #[test]

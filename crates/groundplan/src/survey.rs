@@ -150,7 +150,17 @@ fn find_warnings(
     }
     let is_way = |label: &Label| matches!(label, Label::Corridor { .. } | Label::Junction { .. });
     if !lines.is_empty() && !labels.iter().any(is_way) {
-        warn("no-labels", "no corridor and no junction was found".to_owned());
+        let (least, most, aspect) =
+            (parameters.labels_min_width, parameters.labels_max_width, parameters.labels_min_aspect);
+        let regions = labels.iter().filter(|label| matches!(label, Label::Region { .. })).count();
+        warn(
+            "no-labels",
+            format!(
+                "no corridor and no junction was found (regions: {regions}); a corridor has walls on both sides, is \
+                 labels.min_width = {least} to labels.max_width = {most} m wide and labels.min_aspect = {aspect} times \
+                 as long"
+            ),
+        );
     }
     warnings
 }

@@ -33,7 +33,8 @@ def directions(survey: Survey, view: Underlay) -> Figure:
     wide, high = fitted(view, *((4.6, 4.6) if beside else (9.4, 4.2)))
     plot = (4.4, max(2.6, high)) if beside else (wide, 2.4)
     if beside:
-        figure = blank(LEFT + wide + 0.75 + plot[0] + RIGHT, max(high, plot[1]) + 1.15)
+        # Room for the scale bar below the map's name.
+        figure = blank(LEFT + wide + 0.75 + plot[0] + RIGHT, max(high, plot[1]) + 1.3)
         axes = map_panel(figure, view, LEFT, 0.45 + max(0.0, plot[1] - high), wide)
         chart = place(figure, LEFT + wide + 0.75, 0.45, *plot)
     else:

@@ -42,9 +42,7 @@ def draw_labels(axes: Axes, survey: Survey) -> None:
     draw_pillars(axes, kinds["pillar"])
     draw_junctions(axes, kinds["junction"], kinds["corridor"], names)
     draw_corridors(axes, kinds["corridor"], kinds["junction"], names)
-    # Corridors have names of their own, in the same place.
-    ways = bool(kinds["corridor"])
-    name_regions([label for label in kinds["region"] if not (ways and label.get("use") == "corridor")], names)
+    name_regions(kinds["region"], kinds["corridor"], names)
 
 
 def draw_walls(axes: Axes, survey: Survey, width: float = 1.1) -> None:
@@ -99,12 +97,13 @@ def draw_regions(axes: Axes, regions: Sequence[Label]) -> None:
         axes.add_patch(patch)
 
 
-def name_regions(regions: Sequence[Label], names: Names) -> None:
-    """Names where there is room for them, those of large regions first."""
+def name_regions(regions: Sequence[Label], corridors: Sequence[Label], names: Names) -> None:
+    """Names where there is room for them, those of large regions first; a way goes by the names of its corridors."""
+    middles = np.array([np.mean(corridor["axis"], axis=0) for corridor in corridors]).reshape(-1, 2)
     line = 1.15 * REGION_TYPE[0] / names.dots
     for region in sorted(regions, key=lambda region: -float(region.get("area", 0))):
         name, inside = region.get("name"), closed(np.asarray(region["polygon"], dtype=np.float64))
-        if not name:
+        if not name or (region.get("use") == "corridor" and inside.contains_points(middles).any()):
             continue
         near = [np.add(region["at"], [0.0, rows * line]) for rows in (0, 1, -1, 2, -2)]
         room = [(at, size) for size in REGION_TYPE for at in near if names.fits(at, name, size)]

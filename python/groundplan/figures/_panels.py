@@ -179,12 +179,14 @@ def head_height(note: Sequence[str], width: float, room: float) -> float:
     return HEAD + NOTE_ROW * (max(0, len(lines) - 1) + alone)
 
 
-def map_panel(figure: Figure, view: Underlay, left: float, bottom: float, width: float, title: str = "") -> Axes:
-    """A map on a sheet with others, `width` inches wide, its title above it."""
+def map_panel(
+    figure: Figure, view: Underlay, left: float, bottom: float, width: float, title: str = "", lift: float = 0.0
+) -> Axes:
+    """A map on a sheet with others, `width` inches wide, its title above it, lifted by so many inches."""
     axes = place(figure, left, bottom, width, width * view.size[1] / view.size[0])
     frame(axes, view.extent)
     if title:
-        axes.set_title(title, pad=4)
+        axes.set_title(title, pad=4 + 72 * lift)
     return axes
 
 

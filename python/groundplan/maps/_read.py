@@ -33,6 +33,7 @@ from groundplan.maps._warnings import (
     shares,
     unknown_as_free,
     unknown_as_occupied,
+    walls_as_unknown,
 )
 from groundplan.maps.image import FORMATS, Picture, is_image, look, read_image
 from groundplan.maps.map_server import (
@@ -277,8 +278,10 @@ def _interpret(
             named = ", ".join(map(str, absent))
             warnings.append(MapWarning("unknown-absent", f"no pixel has the grey {named} given as unknown"))
     darker = any(warning.code == "unknown-as-occupied" for warning in warnings)
-    warnings += nonsense(shares(counts, states), high, low, walls_darker=darker)
-    return pixels, values, states, warnings
+    odd = nonsense(shares(counts, states), high, low, walls_darker=darker)
+    if meaning.mode != "raw" and not odd:
+        odd = walls_as_unknown(pixels, counts, states, darkness(shades, meaning))
+    return pixels, values, states, warnings + odd
 
 
 def _chosen(unknown: Unknown) -> list[int] | str | None:

@@ -14,6 +14,11 @@ from groundplan.maps._map import FREE, OCCUPIED, UNKNOWN, MapWarning
 #: More of the map occupied than this is an outside painted like the walls.
 MOSTLY = 0.5
 
+#: Darker than the usual unknown by this, a grey is something else; a state of its own where walls are looked for.
+DARKER, DARK = 16 / 255, 3
+#: Rows that are looked at, pixels behind the end of the free space, and the fewest ends that say something.
+ROWS, BEHIND, FEWEST = 128, 4, 50
+
 #: map_saver rounds the resolution to millimetres; from this error over the map's length on, in metres, it is told.
 ROUNDING = 0.25
 
@@ -111,6 +116,46 @@ def nonsense(
         said = f"{percent(shares[OCCUPIED])} of the map is occupied: {'' if walls_darker else same}"
         warnings.append(MapWarning("outside-occupied", f"{said}if black is meant to be free, --negate says so"))
     return warnings
+
+
+def walls_as_unknown(
+    pixels: npt.NDArray[np.uint8],
+    counts: npt.NDArray[np.int64],
+    states: npt.NDArray[np.uint8],
+    p: npt.NDArray[np.float64],
+) -> list[MapWarning]:
+    """A warning where free space ends at something darker than the unknown and seldom at something occupied.
+
+    Parameters
+    ----------
+    pixels : (height, width) uint8
+        Some rows of it are looked at.
+    counts, states, p : (256,)
+        How many pixels have each value, its state, and how dark it is, 0 to 1.
+    """
+    if not (states == UNKNOWN).any():
+        return []
+    usual = int(np.where(states == UNKNOWN, counts, -1).argmax())
+    limit = float(p[usual]) + DARKER
+    kind = np.where(states == UNKNOWN, np.where(p > limit, DARK, UNKNOWN), states).astype(np.uint8)
+    rows = kind[pixels[:: max(1, len(pixels) // ROWS)]]
+    seen = {OCCUPIED: 0, DARK: 0}
+    for line in (rows, rows[:, ::-1]):
+        ends = np.argwhere((line[:, :-1] == FREE) & (line[:, 1:] != FREE))
+        # What lies behind the end of the free space, before the next free pixel.
+        reach = np.minimum(ends[:, 1:] + np.arange(1, BEHIND + 1), line.shape[1] - 1)
+        behind = line[ends[:, :1], reach]
+        before = np.logical_and.accumulate(behind != FREE, axis=1)
+        taken, dark = (((behind == state) & before).any(axis=1) for state in (OCCUPIED, DARK))
+        seen[OCCUPIED] += int(taken.sum())
+        seen[DARK] += int((dark & ~taken).sum())
+    if seen[DARK] <= max(FEWEST, 2 * seen[OCCUPIED]):
+        return []
+    said = (
+        f"free space ends {seen[DARK]} times at something darker than the unknown and {seen[OCCUPIED]} times at "
+        f"something occupied: walls may count as unknown; --occupied-thresh {limit:.2f} would make them occupied"
+    )
+    return [MapWarning("walls-as-unknown", said)]
 
 
 def rounded(resolution: float, shape: tuple[int, ...]) -> list[MapWarning]:
