@@ -40,8 +40,8 @@ def test_neighbours_know_each_other_and_an_aisle_knows_its_junctions_and_racks(t
     for row in by_id.values():
         for other in filter(None, row["neighbours"].split(";")):
             assert row["id"] in by_id[other]["neighbours"].split(";")
-    assert by_id["A02"]["neighbours"] == "J04;J05;J06;S01;S03;S02;S04"
-    assert by_id["A02"]["region"] == "R01"
+    assert by_id["A02"]["neighbours"] == "J04;J05;J06;S2-03;S3-03;S2-08;S3-08"
+    assert by_id["A02"]["region"] == "R4-05"
 
 
 def test_names_come_back_in_one_line(tmp_path: Path) -> None:

@@ -63,12 +63,12 @@ def is_simple(ring: list[list[float]]) -> bool:
 def test_two_rooms_with_a_door_are_two_regions_that_it_joins() -> None:
     found = survey(two_rooms(18).picture)
     rooms, doors = found.of_kind("region"), found.of_kind("door")
-    assert [(room["name"], room["use"]) for room in rooms] == [("R01", "room"), ("R02", "room")]
+    assert [(room["name"], room["use"]) for room in rooms] == [("R1-01", "room"), ("R1-02", "room")]
     assert [room["area"] for room in rooms] == pytest.approx([94 * 88 / 400, 94 * 88 / 400], rel=0.02)
     (door,) = doors
     assert door["width"] == pytest.approx(18 * RESOLUTION, abs=0.06)
     assert door["at"] == pytest.approx([108.5 * RESOLUTION, 39 * RESOLUTION], abs=0.16)
-    assert [found.labels[n]["name"] for n in door["between"]] == ["R01", "R02"]
+    assert [found.labels[n]["name"] for n in door["between"]] == ["R1-01", "R1-02"]
 
 
 @pytest.mark.parametrize("degrees", [0, 12, 31, 45, 77])

@@ -206,6 +206,8 @@ parameters! {
         "A corridor is at most this wide.";
     labels_min_aspect: f64 = 1.5, "labels.min_aspect", "", Range::Number(0.0, 100.0), false, "II-E",
         "A corridor is at least this many times as long as it is wide.";
+    labels_square: f64 = 4.0, "labels.square", "m", Range::Number(0.5, 100.0), false, "II-E",
+        "Regions, racks and pillars are named by the squares of a grid along the dominant direction; the side of one.";
     rooms_max_opening: f64 = 3.5, "rooms.max_opening", "m", Range::Number(0.0, 100.0), false, "II-E",
         "A gap in a wall may be a door when it is at most this wide.";
     rooms_openness: f64 = 0.8, "rooms.openness", "", Range::Number(0.1, 1.0), false, "II-E",

@@ -25,9 +25,24 @@ SCORES = {
     "regions": ("regions found", "", 0),
 }
 
+SCORES |= {
+    f"{score}_{kind}": (f"{kind} {word}", "", 3)
+    for score, word in (("names", "by the same name"), ("found", "found again"))
+    for kind in ("aisles", "regions", "racks", "pillars")
+}
+
 #: Columns of the suite's table: those before the labels are the same for every method.
 BEFORE = {"direction_error_deg": "error", "direction_extra": "extra", "line_recall": "lines"}
 LABELS = {"junction_f1": "F1", "junction_typed_f1": "typed", "corridor_recall": "recall", "corridor_precision": "prec"}
+#: Of the suite of names, in place of those: kept, and found again by whatever name.
+NAMES = {
+    "names_aisles": "aisles",
+    "found_aisles": "(found)",
+    "names_regions": "regions",
+    "found_regions": "(found)",
+    "names_racks": "racks",
+    "found_racks": "(found)",
+}
 #: Of a suite of rooms, in place of those.
 REGIONS = {"iou_1to1": "IoU", "mcc": "MCC", "rooms": "rooms", "regions": "found"}
 
@@ -40,7 +55,7 @@ def fill(own: argparse.ArgumentParser) -> None:
     own.add_argument("--json", action="store_true", help="print the scores as JSON")
     group = own.add_argument_group("a suite of maps")
     group.add_argument(
-        "--suite", metavar="NAME", help="survey and score each of its cases: warehouses, offices or rooms"
+        "--suite", metavar="NAME", help="survey and score each of its cases: warehouses, offices, rooms or names"
     )
     group.add_argument(
         "--maps",
@@ -116,7 +131,7 @@ def suite_table(result: dict[str, Any]) -> str:
     rows += [(name, "all", result[key]) for name, key in (("mean", "means"), ("worst", "worst"))]
     below = len(rows) - len(result["cases"])
     known = result["means"][methods[0]]
-    same, apart = ({k: name for k, name in part.items() if k in known} for part in (BEFORE, LABELS | REGIONS))
+    same, apart = ({k: name for k, name in part.items() if k in known} for part in (BEFORE, LABELS | REGIONS | NAMES))
     head = ["case", "kind", *same.values()]
     first = [[name, kind, *_cells(by[methods[0]], same)] for name, kind, by in rows]
     cases = _block("", head, first, below)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 import tomllib
@@ -175,8 +176,8 @@ def suite(name: str, maps: str | os.PathLike[str] | None = None) -> list[Case]:
     Parameters
     ----------
     name
-        ``warehouses`` and ``offices`` are simulated, ``rooms`` are the maps of Bormann et al. (2016), which are not
-        ours to give away.
+        ``warehouses``, ``offices`` and ``names`` (places of which several maps are made) are simulated, ``rooms`` are
+        the maps of Bormann et al. (2016), which are not ours to give away.
     maps
         Where those lie: ``<name>.yaml`` and ``<name>_furnitures.yaml`` beside ``<name>.gt.png``. By default what the
         environment's GROUNDPLAN_ROOM_MAPS says, or ../shared/maps/bormann.
@@ -191,8 +192,11 @@ def suite(name: str, maps: str | os.PathLike[str] | None = None) -> list[Case]:
     if name == "rooms":
         return _rooms(Path(maps or os.environ.get(MAPS) or _BESIDE))
     text = (resources.files("groundplan.evaluate") / f"{name}.toml").read_text(encoding="utf-8")
-    place = name.removesuffix("s")
-    return [Case(case.pop("name"), case.pop("kind"), place, case) for case in tomllib.loads(text)["case"]]
+    cases = [
+        Case(case.pop("name"), case.pop("kind"), name.removesuffix("s"), case) for case in tomllib.loads(text)["case"]
+    ]
+    # Of the suite of names a case's kind says what is simulated.
+    return [dataclasses.replace(case, place=case.kind) if name == "names" else case for case in cases]
 
 
 def _rooms(maps: Path) -> list[Case]:

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from groundplan import simulate
 from groundplan._errors import GroundplanError
 from groundplan.evaluate import Case, _scores, score, score_regions, suite
+from groundplan.evaluate._names import name_scores
 from groundplan.maps import Map, read
 from groundplan.parameters import resolve, table
 from groundplan.stages import cores
@@ -24,6 +25,9 @@ from groundplan.survey import survey
 
 #: Algorithm 1 of the paper as printed, which every other method is held against.
 PRINTED = "paper"
+
+#: Degrees by which the maps of one place are turned against the first.
+_TURNED = 0.5
 
 
 def methods() -> tuple[str, ...]:
@@ -70,7 +74,7 @@ def run(
         ``extra.missing`` without SciPy or Shapely, ``suite.worker`` when a worker process ends early.
     """
     cases = suite(name, maps)
-    usual = methods() if cases[0].place == "warehouse" else methods()[:1]
+    usual = methods() if name == "warehouses" else methods()[:1]
     labellers = tuple(dict.fromkeys(chosen or usual))
     for method in labellers:
         resolve({"labels.method": method})
@@ -138,6 +142,8 @@ def _die_of_interrupts() -> None:
 
 def _case(case: Case, labellers: tuple[str, ...]) -> dict[str, dict[str, Any]]:
     """Scores of one case by method."""
+    if "remakes" in case.options:
+        return {method: _remade(case, method) for method in labellers}
     if case.place == "warehouse":
         made = simulate.warehouse(**case.options)
         return _each(labellers, made.map, lambda found: score(found, made.truth))
@@ -148,6 +154,18 @@ def _case(case: Case, labellers: tuple[str, ...]) -> dict[str, dict[str, Any]]:
         return _each(labellers, made.map, lambda found: _office(found, made, rooms))
     map = read(case.options["map"])
     return _each(labellers, map, lambda found: score_regions(found, map, case.options["truth"]))
+
+
+def _remade(case: Case, method: str) -> dict[str, Any]:
+    """Names over several maps of one place, each but the first turned by half a degree one way or the other."""
+    make: Callable[..., simulate.Simulated] = getattr(simulate, case.place)
+    options = {key: value for key, value in case.options.items() if key != "remakes"}
+    yaw = options.pop("yaw", 0.0)
+    surveys = []
+    for remake in range(1 + case.options["remakes"]):
+        made = make(yaw=yaw + (_TURNED if remake % 2 else -_TURNED) * bool(remake), remake=remake, **options)
+        surveys.append((survey(made.map, threads=1, labels_method=method).to_dict(), made.truth))
+    return name_scores(*surveys[0], surveys[1:])
 
 
 def _office(found: dict[str, Any], made: simulate.Simulated, rooms: npt.NDArray[np.uint8]) -> dict[str, Any]:

@@ -3,7 +3,8 @@
     options (_options) -> halls (_hall, _uneven, _staggered, _halls) -> plan (_warehouse, _goods) -> network (_plan)
     options (_options) -> corridors and strips (_strips) -> plan (_office, _furniture) -> network (_plan)
     plan -> raster (_raster) -> drive (_drive, _drift) -> scans and map (_lidar)
-    plan, network and map -> truth (_truth, _rooms)
+    plan -> another time (_remake)
+    plan, network and map -> truth (_truth, _rooms, _patterns)
 
 All is seeded: the same options and seed give the same bytes.
 """
@@ -31,8 +32,10 @@ from groundplan.simulate._drive import explored, route, scan_poses
 from groundplan.simulate._lidar import UNKNOWN, cast, grid_map
 from groundplan.simulate._office import office_plan
 from groundplan.simulate._options import OfficeOptions, WarehouseOptions
+from groundplan.simulate._patterns import patterns
 from groundplan.simulate._plan import GroundPlan, Point, network
 from groundplan.simulate._raster import rasterise
+from groundplan.simulate._remake import rearrange
 from groundplan.simulate._rooms import rooms
 from groundplan.simulate._truth import Picture, truth
 from groundplan.simulate._warehouse import warehouse_plan
@@ -54,8 +57,10 @@ class Simulated:
         As map_server would read it: 0 occupied, 205 unknown, 254 free.
     truth : dict
         ``directions``, ``lines``, ``corridors``, ``junctions`` as `groundplan evaluate` wants them, in the map
-        frame; besides ``ends`` (dead ends), ``options`` and ``seed``; of an office also ``rooms`` {polygon, holes,
-        use, observed} and ``doors`` {at, width, a, b, state, observed}, where a and b are numbers of rooms.
+        frame; besides ``ends`` (dead ends), ``racks`` {a, b, width, pitch, observed}, ``pillars`` {at, width,
+        observed}, ``frame`` (the ground plan's pose in the map: m, m, rad), ``options`` and ``seed``; of an office also
+        ``rooms`` {polygon, holes, use, observed} and ``doors`` {at, width, a, b, state, observed}, where a and b are
+        numbers of rooms.
     rooms : (height, width) uint8, or None
         Of an office, its rooms: more than 250 in a room, dark between rooms, as Bormann et al. (2016) draw theirs.
     """
@@ -153,16 +158,19 @@ def _options(options: Options, seed: int, changes: dict[str, Any]) -> Options:
     return dataclasses.replace(options, **changes)
 
 
-def _stream(seed: int, part: int) -> np.random.Generator:
-    """One stream for each part, so that more noise does not move the racks."""
-    return np.random.Generator(np.random.PCG64([seed, part]))
+def _stream(seed: int, part: int, remake: int = 0) -> np.random.Generator:
+    """One stream for each part, so that more noise does not move the racks; another one for each remake."""
+    return np.random.Generator(np.random.PCG64([seed, part, remake] if remake else [seed, part]))
 
 
 def _simulated(
     plan: GroundPlan, options: WarehouseOptions | OfficeOptions, seed: int, partial: float = 0.0
 ) -> Simulated:
     """Drive through a plan, scan it, and tell the truth about it."""
-    exploration, wander, sensing, bending = (_stream(seed, part) for part in (1, 2, 3, 4))
+    exploration = _stream(seed, 1)
+    wander, sensing, bending = (_stream(seed, part, options.remake) for part in (2, 3, 4))
+    if options.remake:
+        rearrange(plan, options.moved, _stream(seed, 5, options.remake))
     net = network([*plan.corridors, *plan.ways])
     world = rasterise(plan)
     roads, looks = explored(net, partial, exploration)
@@ -192,6 +200,8 @@ def _simulated(
     pixels, corner = _cropped(pixels, corner, options.resolution)
     picture = Picture(pixels[::-1], corner, options.resolution)
     facts = truth(plan, network(plan.corridors), picture, lambda p: turned(drift.bend(p)), yaw)
+    facts |= patterns(plan, picture, lambda p: turned(drift.bend(p)))
+    facts["frame"] = [*(round(value, 6) for value in turned((0.0, 0.0))), round(yaw, 9)]
     shown = None
     if plan.rooms:
         facts_of_rooms, shown = rooms(plan, picture, lambda p: turned(drift.bend(p)))

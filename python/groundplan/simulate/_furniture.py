@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from groundplan.simulate._goods import near
-from groundplan.simulate._plan import GroundPlan, Point, Room
+from groundplan.simulate._plan import GroundPlan, Point, Room, Thing
 
 Floats = npt.NDArray[np.float64]
 
@@ -76,6 +77,7 @@ def _cabinets(plan: GroundPlan, since: int, p: Point, q: Point, amount: float, r
         if s + wide / 2 > length - 0.1 or not _free(plan, since, at, 0.45 * deep):
             continue
         plan.box(at, 0.98 * wide, deep, math.atan2(uy, ux))
+        plan.things.append(Thing("cabinet", len(plan.shapes) - 1, len(plan.shapes)))
 
 
 def _desk_at_wall(plan: GroundPlan, since: int, sides: list[tuple[Point, Point]], random: np.random.Generator) -> bool:
@@ -89,7 +91,9 @@ def _desk_at_wall(plan: GroundPlan, since: int, sides: list[tuple[Point, Point]]
     at = p[0] + s * ux - 0.42 * uy, p[1] + s * uy + 0.42 * ux
     if not _free(plan, since, at, 0.8):
         return False
+    first = len(plan.shapes)
     desk(plan, at, math.atan2(uy, ux), random)
+    plan.things.append(Thing("desk", first, len(plan.shapes), partial(_desk_at_wall, plan, since, sides)))
     return True
 
 
@@ -130,7 +134,9 @@ def _table(plan: GroundPlan, since: int, low: Point, high: Point, random: np.ran
         for side in (-1.0, 1.0):
             at = x - length / 2 + (k + 0.5) * 0.75, y + side * (wide / 2 + 0.3)
             if random.random() < 0.8 and _free(plan, since, at, 0.2):
+                first = len(plan.shapes)
                 chair(plan, at, random)
+                plan.things.append(Thing("chair", first, len(plan.shapes)))
 
 
 def _islands(plan: GroundPlan, since: int, low: Point, high: Point, amount: float, random: np.random.Generator) -> None:
@@ -141,4 +147,6 @@ def _islands(plan: GroundPlan, since: int, low: Point, high: Point, amount: floa
             across = low[1 - long] + share * (high[1 - long] - low[1 - long])
             at = (along, across) if long == 0 else (across, along)
             if random.random() < amount and _free(plan, since, at, 0.5):
+                first = len(plan.shapes)
                 desk(plan, at, turn if long == 0 else turn + math.pi / 2, random)
+                plan.things.append(Thing("desk", first, len(plan.shapes)))

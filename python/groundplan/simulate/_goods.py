@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
 from groundplan.simulate._hall import POST, Hall
 from groundplan.simulate._options import WarehouseOptions
-from groundplan.simulate._plan import Corridor, GroundPlan, Point
+from groundplan.simulate._plan import Corridor, GroundPlan, Point, Thing
 
 _CLEAR = 0.45  # half the width of the strip along a centre line that stays free for the robot
 _PALLET = (1.2, 0.8)
@@ -45,6 +46,19 @@ def fill_bay(
         plan.box(at, length, depth, hall.angle + float(random.normal(0.0, 0.015)))
 
 
+def bay(
+    plan: GroundPlan,
+    place: tuple[Hall, float, float, float, int, float],
+    options: WarehouseOptions,
+    random: np.random.Generator,
+) -> None:
+    """Fill a bay, given as `fill_bay` takes it, or leave it empty."""
+    since = len(plan.shapes)
+    if random.random() >= options.sparse:
+        fill_bay(plan, *place, random)
+    plan.things.append(Thing("bay", since, len(plan.shapes), partial(fill_bay, plan, *place)))
+
+
 def clutter(plan: GroundPlan, options: WarehouseOptions, random: np.random.Generator) -> None:
     """Leave things along the aisles' sides; the robot's strip along every centre line stays clear."""
     for corridor in plan.corridors:
@@ -76,6 +90,8 @@ def _leave(plan: GroundPlan, corridor: Corridor, random: np.random.Generator) ->
     if not all(_clear(other, at, reach) for other in plan.corridors if other is not corridor):
         return False
     plan.box(at, size[0], size[1], math.atan2(uy, ux) + turn)
+    here = len(plan.shapes)
+    plan.things.append(Thing("clutter", here - 1, here, partial(_leave, plan, corridor)))
     return True
 
 
@@ -105,6 +121,7 @@ def floor_goods(plan: GroundPlan, options: WarehouseOptions, random: np.random.G
                 if along > length or any(near(o, at) < o.width / 2 + 1.0 for o in plan.corridors if o is not corridor):
                     break
                 plan.box(at, *_PALLET, turn)
+                plan.things.append(Thing("pallet", len(plan.shapes) - 1, len(plan.shapes)))
 
 
 def near(corridor: Corridor, at: Point) -> float:

@@ -25,6 +25,12 @@ _ROBOT: dict[str, tuple[Any, str, dict[str, Any]]] = {
         {"unit": "m", "least": 0.0, "most": 0.5},
     ),
     "drift": (0.02, "Error of the robot's poses that bends and doubles.", {"unit": "m", "least": 0.0, "most": 1.0}),
+    "remake": (
+        0,
+        "Which map of the same place: other noise and drift, and some of what stands in it was moved.",
+        {"least": 0, "most": 1000},
+    ),
+    "moved": (0.05, "Share of the goods and the furniture that a remake has elsewhere.", {"least": 0.0, "most": 1.0}),
     "lidar_range": (15.0, "Greatest range of the lidar.", {"unit": "m", "least": 2.0, "most": 100.0}),
     "beams": (600, "Beams in a full turn of the lidar.", {"least": 60, "most": 7200}),
     "noise": (0.012, "Deviation of a measured range.", {"unit": "m", "least": 0.0, "most": 0.5}),
@@ -96,12 +102,17 @@ class WarehouseOptions:
     wing: float = _option(
         0.0, "Angle of a wing that is turned against the halls, 0 for no wing.", unit="deg", least=-60.0, most=60.0
     )
+    pillars: float = _option(
+        0.0, "Pitch of a grid of pillars that carries the roof, about; 0 for none.", unit="m", least=0.0, most=30.0
+    )
     bend: float = _robot("bend")
     drift: float = _robot("drift")
     partial: float = _option(0.0, "Share of the ways that the robot does not drive.", least=0.0, most=0.9)
     closed_sides: tuple[str, ...] = _option(
         (), "Sides without an aisle along the wall: south, east, north, west.", choices=SIDES
     )
+    remake: int = _robot("remake")
+    moved: float = _robot("moved")
     lidar_range: float = _robot("lidar_range")
     beams: int = _robot("beams")
     noise: float = _robot("noise")
@@ -148,6 +159,8 @@ class OfficeOptions:
     furniture: float = _option(0.5, "How much furniture there is, from none to all that fits.", least=0.0, most=1.0)
     bend: float = _robot("bend")
     drift: float = _robot("drift")
+    remake: int = _robot("remake")
+    moved: float = _robot("moved")
     lidar_range: float = _robot("lidar_range")
     beams: int = _robot("beams")
     noise: float = _robot("noise")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -102,6 +103,29 @@ class Node:
         return {1: "end", 4: "X"}.get(len(self.arms))
 
 
+@dataclass(frozen=True)
+class Rack:
+    """One piece of a rack row: its centre line from `a` to `b`, its depth, and how many bays of one width it has."""
+
+    a: Point
+    b: Point
+    depth: float
+    bays: int
+
+
+@dataclass(frozen=True)
+class Thing:
+    """Something that can be carried away: shapes `first` to `last` (excluded) of the plan; none for an empty place.
+
+    `put` puts something else of its kind there or thereabouts; None where nothing takes its place.
+    """
+
+    kind: str
+    first: int
+    last: int
+    put: Callable[[np.random.Generator], object] | None = None
+
+
 @dataclass
 class GroundPlan:
     """Everything that a robot could run into, and what it means.
@@ -118,6 +142,10 @@ class GroundPlan:
         The same of an office: a warehouse has none.
     ways : list of Corridor
         What is driven besides the corridors.
+    racks, pillars
+        Pieces of rack rows, and (middle, side) of square pillars.
+    things : list of Thing
+        Goods and furniture, and empty places for them.
     outline : list of (float, float)
         Corners of the halls: all lies within their box.
     """
@@ -130,6 +158,9 @@ class GroundPlan:
     rooms: list[Room] = field(default_factory=list)
     doors: list[Door] = field(default_factory=list)
     ways: list[Corridor] = field(default_factory=list)
+    racks: list[Rack] = field(default_factory=list)
+    pillars: list[tuple[Point, float]] = field(default_factory=list)
+    things: list[Thing] = field(default_factory=list)
 
     def box(self, centre: Point, length: float, width: float, angle: float = 0.0) -> None:
         """Add a rectangle by its centre, its sides and the angle of its length."""

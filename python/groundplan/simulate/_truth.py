@@ -105,12 +105,14 @@ def _line(kind: str, piece: tuple[Point, Point]) -> dict[str, Any]:
     }
 
 
-def _walk(p: Point, q: Point, every: float) -> list[Point]:
+def walk(p: Point, q: Point, every: float) -> list[Point]:
+    """Points from `p` to `q`, in the middles of equal steps of about `every` metres."""
     count = max(1, round(math.dist(p, q) / every))
     return [(p[0] + (q[0] - p[0]) * (k + 0.5) / count, p[1] + (q[1] - p[1]) * (k + 0.5) / count) for k in range(count)]
 
 
-def _mapped(points: list[Point], frame: Frame) -> npt.NDArray[np.float64]:
+def mapped(points: list[Point], frame: Frame) -> npt.NDArray[np.float64]:
+    """Where the map shows points of the plan, (n, 2)."""
     return np.array([frame(p) for p in points])
 
 
@@ -119,13 +121,13 @@ def _seen_face(face: Face, picture: Picture, frame: Frame) -> list[list[Point]]:
 
     Each part is a list of points along it, in the plan.
     """
-    points = _walk(face.p, face.q, _EVERY)
+    points = walk(face.p, face.q, _EVERY)
     nx, ny = face.outward
     known, marked = np.zeros(len(points), dtype=bool), np.zeros(len(points), dtype=bool)
     for off in (0.25, 0.4):
-        known |= picture.at(_mapped([(x + off * nx, y + off * ny) for x, y in points], frame)) != UNKNOWN
+        known |= picture.at(mapped([(x + off * nx, y + off * ny) for x, y in points], frame)) != UNKNOWN
     for off in (-0.12, -0.08, -0.04, 0.0, 0.04, 0.08):
-        marked |= picture.at(_mapped([(x + off * nx, y + off * ny) for x, y in points], frame)) == OCCUPIED
+        marked |= picture.at(mapped([(x + off * nx, y + off * ny) for x, y in points], frame)) == OCCUPIED
     reach = round(_BAY / _EVERY)
     least = 0.3 if face.kind == "wall" else 0.04  # a wall is solid; of an empty rack only posts are seen
     seen = known & (_share(known, reach) >= 0.6) & (_share(marked, reach) >= least)
@@ -220,10 +222,10 @@ def _seen_corridor(a: Point, b: Point, picture: Picture, frame: Frame) -> list[t
     """The parts of a centre line along which the floor is known to be free."""
     length = math.dist(a, b)
     nx, ny = -(b[1] - a[1]) / length, (b[0] - a[0]) / length
-    points = _walk(a, b, _EVERY)
+    points = walk(a, b, _EVERY)
     free = np.mean(
         [
-            picture.at(_mapped([(x + off * nx, y + off * ny) for x, y in points], frame)) == FREE
+            picture.at(mapped([(x + off * nx, y + off * ny) for x, y in points], frame)) == FREE
             for off in (-0.4, -0.2, 0.0, 0.2, 0.4)
         ],
         axis=0,
@@ -241,7 +243,7 @@ def _seen_node(node: Node, picture: Picture, frame: Frame) -> bool:
     """Is the crossing's floor known, and the beginning of every arm, so that its type can be told?"""
     half = 0.35 * node.width
     ring = [(node.at[0] + half * i / 4, node.at[1] + half * j / 4) for i in range(-4, 5) for j in range(-4, 5)]
-    if node.kind != "end" and np.mean(picture.at(_mapped(ring, frame)) == FREE) < 0.8:
+    if node.kind != "end" and np.mean(picture.at(mapped(ring, frame)) == FREE) < 0.8:
         return False
     for ux, uy in node.arms:
         # A metre and a half beyond the crossing, over a metre's width.
@@ -251,6 +253,6 @@ def _seen_node(node: Node, picture: Picture, frame: Frame) -> bool:
             for t in np.arange(start, start + 1.6, 0.1).tolist()
             for v in (-0.5, -0.25, 0.0, 0.25, 0.5)
         ]
-        if np.mean(picture.at(_mapped(floor, frame)) == FREE) < 0.75:
+        if np.mean(picture.at(mapped(floor, frame)) == FREE) < 0.75:
             return False
     return True

@@ -6,14 +6,16 @@ import math
 
 import numpy as np
 
-from groundplan.simulate._goods import clutter, fill_bay, floor_goods
+from groundplan.simulate._goods import bay, clutter, floor_goods, near
 from groundplan.simulate._hall import POST, Hall, Row
 from groundplan.simulate._halls import Passage, site
 from groundplan.simulate._options import WarehouseOptions
-from groundplan.simulate._plan import Corridor, Face, GroundPlan, Point
+from groundplan.simulate._plan import Corridor, Face, GroundPlan, Point, Rack
 
 _WALL = 0.25  # thickness of the outer walls
 _SIDES = ("south", "east", "north", "west")
+_PILLAR = 0.4  # side of a pillar ...
+_PASSED = 0.75  # ... which the robot's ways pass by
 _ALIKE = math.radians(0.5)  # directions nearer than this are one
 
 
@@ -25,6 +27,9 @@ def warehouse_plan(options: WarehouseOptions, random: np.random.Generator) -> Gr
         _build(plan, hall, options, random)
     for passage in passages:
         _join(plan, passage)
+    if options.pillars:
+        for hall in halls:
+            _pillars(plan, hall, options)
     clutter(plan, options, random)
     floor_goods(plan, options, random)
     return plan
@@ -112,8 +117,8 @@ def _rack(
             for v in (y + inward * POST / 2, y + inward * (deep - POST / 2)):
                 plan.box(hall.put(u, v), POST, POST, hall.angle)
         for k in range(bays):
-            if random.random() >= options.sparse:
-                fill_bay(plan, hall, start + k * pitch, pitch, y, inward, deep, random)
+            bay(plan, (hall, start + k * pitch, pitch, y, inward, deep), options, random)
+    plan.racks.append(_axis(hall, row, start, end, bays))
     depth = row.y1 - row.y0
     if len(fronts) == 1 and depth > 1.5 * deep:
         # A block at a wall: behind the front rack it is filled with goods on pallets to the wall.
@@ -121,8 +126,7 @@ def _rack(
         behind = deep + 0.15
         while behind + deep < depth + 0.01:
             for k in range(bays):
-                if random.random() >= options.sparse:
-                    fill_bay(plan, hall, start + k * pitch, pitch, y + inward * behind, inward, deep, random)
+                bay(plan, (hall, start + k * pitch, pitch, y + inward * behind, inward, deep), options, random)
             behind += deep + 0.1
     for u, side in ((start, -1.0), (end, 1.0)):
         if not 0.01 < u < hall.width - 0.01:
@@ -134,3 +138,22 @@ def _rack(
         # The guard that keeps forklifts off a row's end, a hand's breadth shorter than the row is deep.
         trim = 0.08
         plan.slab(hall.put(u, row.y0 + trim), hall.put(u, row.y1 - trim), 0.06, outward)
+
+
+def _axis(hall: Hall, row: Row, start: float, end: float, bays: int) -> Rack:
+    """A piece of a row from face to face; where it stands at a wall, one rack deep."""
+    low = row.y0 if row.below else row.y1 - row.deep
+    high = row.y1 if row.above else row.y0 + row.deep
+    middle = (low + high) / 2
+    return Rack(hall.put(start, middle), hall.put(end, middle), high - low, bays)
+
+
+def _pillars(plan: GroundPlan, hall: Hall, options: WarehouseOptions) -> None:
+    """A grid of pillars as near to its pitch as divides the hall evenly; none where the robot has its way."""
+    counts = [max(2, round(extent / options.pillars)) for extent in (hall.width, hall.depth)]
+    for i in range(1, counts[0]):
+        for j in range(1, counts[1]):
+            at = hall.put(i * hall.width / counts[0], j * hall.depth / counts[1])
+            if all(near(way, at) > _PASSED for way in plan.corridors):
+                plan.box(at, _PILLAR, _PILLAR, hall.angle)
+                plan.pillars.append((at, _PILLAR))

@@ -8,6 +8,7 @@ mod names;
 mod outline;
 mod paper;
 mod pitch;
+mod places;
 mod racks;
 mod rooms;
 mod strips;
@@ -94,7 +95,7 @@ pub enum Label {
         at: [f64; 2],
         /// Free space, square metres.
         area: f64,
-        /// Such as R07.
+        /// Such as R3-07.
         name: String,
     },
     /// A way from one region into another.
@@ -118,7 +119,7 @@ pub enum Label {
         axis: [[f64; 2]; 2],
         /// How deep it is, face to face, metres.
         width: f64,
-        /// Such as S02.
+        /// Such as S2-04.
         name: String,
     },
     /// Something small that stands by itself and recurs.

@@ -5,9 +5,11 @@ use super::gates;
 use super::junctions::{self, Meeting};
 use super::look::Look;
 use super::names::{Named, names};
+use super::places::Squares;
 use super::racks::{self, Row};
+use super::rooms::{self, Racked};
 use super::turned::Turned;
-use super::{Evidence, JunctionKind, Label, outline, rooms};
+use super::{Evidence, JunctionKind, Label, outline};
 use crate::grid::{State, tidy};
 use crate::tiles::Tiles;
 
@@ -73,27 +75,22 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
             Label::Corridor { faces: faces.take(&polygon), polygon, axis, width: tidy(strip.width()), name }
         })
         .collect();
-    let ways = ways_along_racks(&views, &strips, &extents, &meetings, &rows);
+    let racked = racked(&views, &strips, &extents, &meetings, &rows);
     labels.extend(junctions);
-    labels.extend(rack_labels(evidence, &views, &rows));
-    labels.extend(rooms::find(evidence, labels.len(), &ways));
+    let squares = squares(evidence, &views, &strips);
+    labels.extend(rack_labels(evidence, &views, &rows, &squares));
+    labels.extend(rooms::find(evidence, labels.len(), &racked, &squares));
     labels
 }
 
-/// The corridors along racks and those that cross them, and the racks' own ground with a rim.
-fn ways_along_racks(
-    views: &[Turned],
-    strips: &[Strip],
-    extents: &[[f64; 2]],
-    meetings: &[Meeting],
-    rows: &[Row],
-) -> Vec<Vec<[f64; 2]>> {
+/// The racks' own ground, and, with a rim round it, the corridors along racks and those that cross them.
+fn racked(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], meetings: &[Meeting], rows: &[Row]) -> Racked {
     // In an office what lies between two corridors is rooms: there are racks where there are several.
     let length = |ends: &[f64; 2]| ends[1] - ends[0];
     let racks: f64 = rows.iter().map(|row| length(&row.along)).sum();
     let corridors: f64 = extents.iter().map(length).sum();
     if rows.len() < RACKS.0 || racks < RACKS.1 * corridors {
-        return Vec::new();
+        return Racked::default();
     }
     let mut along: Vec<usize> = rows.iter().filter_map(|row| row.between).flatten().collect();
     along.sort_unstable();
@@ -112,7 +109,10 @@ fn ways_along_racks(
         let wider = |[low, high]: [f64; 2]| [low - RIM, high + RIM];
         rectangle(&views[row.direction], wider(row.along), wider(row.across))
     });
-    corridors.chain(grounds).collect()
+    Racked {
+        ways: corridors.chain(grounds).collect(),
+        grounds: rows.iter().map(|row| rectangle(&views[row.direction], row.along, row.across)).collect(),
+    }
 }
 
 /// The ways, what they meet and where they end, and the rows between them.
@@ -145,15 +145,22 @@ impl Plan {
     }
 }
 
-fn rack_labels(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Label> {
+/// Squares along the direction that has most corridor, or where there is none, most structure.
+fn squares(evidence: &Evidence, views: &[Turned], strips: &[Strip]) -> Squares {
+    let length =
+        |view: &Turned| strips.iter().filter(|s| s.direction == view.direction).map(Strip::length).sum::<f64>();
+    let main = views.iter().rev().max_by(|a, b| length(a).total_cmp(&length(b)));
+    Squares::new(main, evidence)
+}
+
+fn rack_labels(evidence: &Evidence, views: &[Turned], rows: &[Row], squares: &Squares) -> Vec<Label> {
     let mut faces = Faces::new(evidence, |_| true);
-    let named = rows.iter().map(|row| Named {
-        direction: row.direction,
-        across: f64::midpoint(row.across[0], row.across[1]),
-        along: f64::midpoint(row.along[0], row.along[1]),
-        weight: row.along[1] - row.along[0],
-    });
-    let names = names(views, &named.collect::<Vec<_>>(), "S", "S");
+    let middle = |row: &Row| {
+        let place = [row.along, row.across].map(|ends| f64::midpoint(ends[0], ends[1]));
+        squares.place(views[row.direction].to_map(place))
+    };
+    let items: Vec<_> = rows.iter().map(|row| (middle(row), row.along[1] - row.along[0])).collect();
+    let names = squares.names("S", &items);
     rows.iter()
         .zip(names)
         .map(|(row, name)| {

@@ -11,13 +11,13 @@ mod narrows;
 mod outlines;
 mod raster;
 
+use super::places::Squares;
 use super::{Evidence, Label, Purpose, outline};
 use crate::grid::{State, tidy};
 use crate::subdivision::distance;
 use cells::Rules;
 use gaps::Bar;
 use raster::Raster;
-use std::f64::consts::FRAC_PI_2;
 
 /// What stands apart from all else is a region when it holds so much, square metres, and has room for a circle of such a
 /// radius, metres: less is a ray through a window.
@@ -36,6 +36,11 @@ const BESIDE: i32 = 8;
 const SAME: f64 = 0.75;
 /// A gap and a narrow whose ends are this near are one opening; so are pieces of openings that come this near, metres.
 const TOGETHER: f64 = 0.35;
+/// Of a region's extent so much at each end does not count, and it is measured by about so many pixels.
+const STICKS_OUT: f64 = 0.03;
+const SAMPLES: usize = 20_000;
+/// What lies for the most part within a rack, by so many looks, is a gap between its goods.
+const LOOKS: usize = 200;
 
 /// A region while its label is made.
 struct Region {
@@ -43,7 +48,7 @@ struct Region {
     pixels: Vec<usize>,
     /// The pixel farthest from all walls.
     at: usize,
-    /// Mean of all pixels, metres, along and across the dominant direction.
+    /// Its middle in the squares that give names.
     place: [f64; 2],
 }
 
@@ -82,21 +87,29 @@ impl Doorway {
     }
 }
 
-/// Regions, then the doors between them; `first` is the id of the first of these labels, and within `ways`, convex
-/// polygons in the map frame, there are no doors: they are ways along racks.
-pub fn find(evidence: &Evidence, first: usize, ways: &[Vec<[f64; 2]>]) -> Vec<Label> {
+/// Where there are racks: convex polygons in the map frame.
+#[derive(Default)]
+pub struct Racked {
+    /// Ways along racks: no doors are within them.
+    pub ways: Vec<Vec<[f64; 2]>>,
+    /// What the racks stand on: what is free of it is no region.
+    pub grounds: Vec<Vec<[f64; 2]>>,
+}
+
+/// Regions, then the doors between them; `first` is the id of the first of these labels.
+pub fn find(evidence: &Evidence, first: usize, racked: &Racked, squares: &Squares) -> Vec<Label> {
     let Some(raster) = Raster::new(evidence.grid) else { return Vec::new() };
     let clearance = raster.clearance();
     let mut bars = bars(evidence, &raster, &clearance);
     bars.retain(|bar| {
         let middle = [0, 1].map(|axis| f64::midpoint(bar.ends[0][axis], bar.ends[1][axis]));
         let middle = evidence.grid.frame.to_metres(raster.to_grid(middle));
-        !ways.iter().any(|way| outline::holds(way, middle))
+        !racked.ways.iter().any(|way| outline::holds(way, middle))
     });
     let parameters = evidence.parameters;
     let rules = Rules { openness: parameters.rooms_openness, least_area: parameters.rooms_min_area };
     let mut cells = cells::find(&raster, &bars, &rules);
-    let mut regions = regions(evidence, &raster, &clearance, &mut cells.regions);
+    let mut regions = regions(evidence, &raster, &clearance, &mut cells.regions, racked, squares);
     sort_by_rows(&mut regions);
     let mut order = vec![0; regions.len() + 1];
     for (n, region) in regions.iter().enumerate() {
@@ -104,8 +117,9 @@ pub fn find(evidence: &Evidence, first: usize, ways: &[Vec<[f64; 2]>]) -> Vec<La
     }
     let doorways = doorways(&raster, &cells.regions, cells.openings);
     let faces = faces(evidence, &raster, &cells.regions, regions.len());
+    let places: Vec<_> = regions.iter().map(|region| (region.place, region.pixels.len() as f64)).collect();
     let mut labels: Vec<Label> = Vec::new();
-    for (n, region) in regions.iter().enumerate() {
+    for (region, name) in regions.iter().zip(squares.names("R", &places)) {
         let doors = doorways.iter().filter(|door| door.between.contains(&region.number)).count();
         let to_map = |place| evidence.grid.frame.to_metres(place).map(tidy);
         let rings = outlines::rings(&raster, &cells.regions, region.number, &region.pixels);
@@ -117,7 +131,7 @@ pub fn find(evidence: &Evidence, first: usize, ways: &[Vec<[f64; 2]>]) -> Vec<La
             holes: rings.collect(),
             at: to_map(raster.to_grid(raster.place(region.at))),
             area: tidy(area(&raster, &region.pixels)),
-            name: format!("R{:02}", n + 1),
+            name,
         });
     }
     let mut doors: Vec<([u32; 2], &Doorway)> = doorways
@@ -162,7 +176,14 @@ fn area(raster: &Raster, pixels: &[usize]) -> f64 {
 }
 
 /// Makes every region one connected piece, leaves out what nobody could stand in, and numbers them from 1.
-fn regions(evidence: &Evidence, raster: &Raster, clearance: &[u32], numbers: &mut [u32]) -> Vec<Region> {
+fn regions(
+    evidence: &Evidence,
+    raster: &Raster,
+    clearance: &[u32],
+    numbers: &mut [u32],
+    racked: &Racked,
+    squares: &Squares,
+) -> Vec<Region> {
     let pieces = raster.pieces(|pixel| numbers[pixel] != 0, |a, b| numbers[a] == numbers[b]);
     let mut largest = std::collections::BTreeMap::new();
     for (n, list) in pieces.lists.iter().enumerate() {
@@ -172,10 +193,18 @@ fn regions(evidence: &Evidence, raster: &Raster, clearance: &[u32], numbers: &mu
         }
     }
     let radius = raster.pixels(ALONE.1);
+    let within_rack = |list: &Vec<usize>| {
+        let looks = list.iter().step_by(list.len().div_ceil(LOOKS));
+        let on_rack = |&&pixel: &&usize| {
+            let at = evidence.grid.frame.to_metres(raster.to_grid(raster.place(pixel)));
+            racked.grounds.iter().any(|ground| outline::holds(ground, at))
+        };
+        2 * looks.clone().filter(on_rack).count() > looks.count()
+    };
     let stands = |n: usize, list: &Vec<usize>| {
         let widest = list.iter().map(|&pixel| clearance[pixel]).max().unwrap_or(0);
         let least = if largest[&numbers[list[0]]] == n { ALONE.0 } else { evidence.parameters.rooms_min_area };
-        area(raster, list) >= least && f64::from(widest) >= radius * radius
+        area(raster, list) >= least && f64::from(widest) >= radius * radius && !within_rack(list)
     };
     let stays: Vec<bool> = pieces.lists.iter().enumerate().map(|(n, list)| stands(n, list)).collect();
     let mut next = 0;
@@ -190,25 +219,29 @@ fn regions(evidence: &Evidence, raster: &Raster, clearance: &[u32], numbers: &mu
     for (pixel, &number) in numbers.iter().enumerate().filter(|(_, number)| **number != 0) {
         lists[number as usize - 1].push(pixel);
     }
-    let angle = dominant(evidence);
-    let (cos, sin) = (libm::cos(angle), libm::sin(angle));
     let region = |(n, pixels): (usize, Vec<usize>)| {
         let at = pixels.iter().copied().max_by_key(|&pixel| (clearance[pixel], usize::MAX - pixel)).unwrap_or(0);
-        let mean = [raster.width, usize::MAX].map(|axis| {
-            let places =
-                pixels.iter().map(|&pixel| if axis == raster.width { pixel % axis } else { pixel / raster.width });
-            places.sum::<usize>() as f64 / pixels.len() as f64
-        });
-        let [x, y] = evidence.grid.frame.to_metres(raster.to_grid(mean));
-        Region { number: n as u32 + 1, pixels, at, place: [x * cos + y * sin, y * cos - x * sin] }
+        let place = middle(evidence, raster, &pixels, squares);
+        Region { number: n as u32 + 1, pixels, at, place }
     };
     lists.into_iter().enumerate().map(region).collect()
 }
 
-/// The dominant direction, or the one square to it: whichever is nearer to the map's x axis.
-fn dominant(evidence: &Evidence) -> f64 {
-    let angle = evidence.directions.angles.first().copied().unwrap_or(0.0);
-    angle - (angle / FRAC_PI_2).round() * FRAC_PI_2
+/// Where a region's middle lies in the squares: between its ends along and across, without what sticks out. What
+/// stands in a hall moves its mean, but not its ends.
+fn middle(evidence: &Evidence, raster: &Raster, pixels: &[usize], squares: &Squares) -> [f64; 2] {
+    let step = pixels.len().div_ceil(SAMPLES);
+    let places = pixels
+        .iter()
+        .step_by(step)
+        .map(|&pixel| squares.place(evidence.grid.frame.to_metres(raster.to_grid(raster.place(pixel)))));
+    let places: Vec<[f64; 2]> = places.collect();
+    let ends = (STICKS_OUT * places.len() as f64) as usize;
+    [0, 1].map(|axis| {
+        let mut values: Vec<f64> = places.iter().map(|place| place[axis]).collect();
+        values.sort_by(f64::total_cmp);
+        f64::midpoint(values[ends], values[values.len() - 1 - ends])
+    })
 }
 
 /// Row by row from the top, each row from the left.

@@ -1,0 +1,111 @@
+//! Names by place: the site in squares along its dominant direction, so that a name says where a thing is, and what
+//! appears, goes or is cut in two renames nothing else.
+
+use super::Evidence;
+use super::turned::Turned;
+use std::f64::consts::FRAC_PI_2;
+
+/// Rows of squares run along the dominant direction, or square to it: whichever is nearer to this. It lies between the
+/// angles at which people build, so that a map made again, a little turned, has the same rows.
+const FORWARDS: [f64; 2] = [0.927, 0.375];
+/// The first square begins where so much of the free space lies before it, so that a ray through a window moves none.
+const BEFORE: f64 = 0.01;
+/// Every so many columns and rows of the turned map are looked at.
+const STRIDE: usize = 3;
+
+/// The squares.
+pub struct Squares {
+    heading: [f64; 2],
+    corner: [f64; 2],
+    side: f64,
+}
+
+impl Squares {
+    /// Squares over the map as it is seen along a direction; along the map's own axes when there is none.
+    pub fn new(view: Option<&Turned>, evidence: &Evidence) -> Self {
+        let side = evidence.parameters.labels_square;
+        let Some(view) = view else {
+            let corner = evidence.grid.frame.to_metres([0.0, 0.0]);
+            return Self { heading: [1.0, 0.0], corner, side };
+        };
+        let quarters = (0..4).map(|n| view.angle + f64::from(n) * FRAC_PI_2);
+        let headings = quarters.map(|angle| [libm::cos(angle), libm::sin(angle)]);
+        let nearer = |h: &[f64; 2]| h[0] * FORWARDS[0] + h[1] * FORWARDS[1];
+        let heading = headings.max_by(|a, b| nearer(a).total_cmp(&nearer(b))).unwrap_or([1.0, 0.0]);
+        let mut made = Self { heading, corner: [0.0; 2], side };
+        // Of the view's own axes, each is one of the squares', be it backwards.
+        let along = extent(&free_columns(view), view.start[0], view.cell);
+        let across = extent(&free_rows(view), view.start[1], view.cell);
+        let corners = [0, 1].map(|n| made.place(view.to_map([along[n], across[n]])));
+        made.corner = [0, 1].map(|axis| corners[0][axis].min(corners[1][axis]));
+        made
+    }
+
+    /// Metres along the rows and across them.
+    pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [c, s] = self.heading;
+        [x * c + y * s, y * c - x * s]
+    }
+
+    /// A name for each place: the letter, the row from below and the square in it from the left. Of several in one
+    /// square the one that weighs most has the plain name.
+    pub fn names(&self, letter: &str, items: &[([f64; 2], f64)]) -> Vec<String> {
+        let square = |place: [f64; 2]| {
+            let [u, v] = [0, 1].map(|axis| ((place[axis] - self.corner[axis]) / self.side).floor().max(0.0) as usize);
+            [v, u]
+        };
+        let mut order: Vec<usize> = (0..items.len()).collect();
+        order.sort_by(|&a, &b| square(items[a].0).cmp(&square(items[b].0)).then(items[b].1.total_cmp(&items[a].1)));
+        let mut names = vec![String::new(); items.len()];
+        for group in order.chunk_by(|&a, &b| square(items[a].0) == square(items[b].0)) {
+            for (n, &item) in group.iter().enumerate() {
+                let [row, column] = square(items[item].0);
+                names[item] = format!("{letter}{}-{:02}{}", row + 1, column + 1, suffix(n));
+            }
+        }
+        names
+    }
+}
+
+/// Nothing for the first, then b to z, then numbers.
+fn suffix(n: usize) -> String {
+    match n {
+        0 => String::new(),
+        1..=25 => char::from(b'a' + n as u8).to_string(),
+        _ => format!("-{}", n + 1),
+    }
+}
+
+/// Free share of each column.
+fn free_columns(view: &Turned) -> Vec<f64> {
+    let top = view.start[1] + view.size[1] as f64 * view.cell;
+    (0..view.size[0]).map(|column| 1.0 - view.blocked(column, view.start[1], top)).collect()
+}
+
+/// How much of each row is free.
+fn free_rows(view: &Turned) -> Vec<f64> {
+    let row = |n: usize| {
+        let low = view.start[1] + n as f64 * view.cell;
+        let columns = (0..view.size[0]).step_by(STRIDE);
+        columns.map(|column| 1.0 - view.blocked(column, low, low + view.cell)).sum::<f64>()
+    };
+    (0..view.size[1]).map(row).collect()
+}
+
+/// Between which places all but a little of the free space lies.
+fn extent(free: &[f64], start: f64, cell: f64) -> [f64; 2] {
+    let least = BEFORE * free.iter().sum::<f64>();
+    let reach = |values: &mut dyn Iterator<Item = &f64>| {
+        let mut before = 0.0;
+        let mut steps = 0.0;
+        for value in values {
+            if before + value > least {
+                return steps + (least - before) / value;
+            }
+            before += value;
+            steps += 1.0;
+        }
+        steps
+    };
+    [start + cell * reach(&mut free.iter()), start + cell * (free.len() as f64 - reach(&mut free.iter().rev()))]
+}
