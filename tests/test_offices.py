@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.util
 import json
-import math
 import sys
 import types
 from functools import cache
@@ -12,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from _simulated import along, states
 from PIL import Image
 
 from groundplan import read
@@ -39,20 +38,6 @@ SHAPES: list[dict[str, Any]] = [
 @cache
 def small(**changes: Any) -> Simulated:
     return office(seed=3, **(SMALL | changes))
-
-
-def states(simulated: Simulated, points: npt.NDArray[np.float64]) -> npt.NDArray[np.uint8]:
-    m = simulated.map
-    index = np.floor((points - np.array(m.origin[:2])) / m.resolution).astype(int)
-    found: npt.NDArray[np.uint8] = m.states[m.pixels[m.height - 1 - index[:, 1], index[:, 0]]]
-    return found
-
-
-def along(p: list[float], q: list[float]) -> npt.NDArray[np.float64]:
-    count = max(2, int(math.dist(p, q) / 0.1))
-    share = (np.arange(count)[:, None] + 0.5) / count
-    points: npt.NDArray[np.float64] = np.array(p) + share * (np.array(q) - np.array(p))
-    return points
 
 
 def survey_of(simulated: Simulated, wrong: np.random.Generator | None = None) -> dict[str, Any]:

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 import yaml
+from _simulated import along, states
 
 from groundplan._errors import FormatError, ParameterError
 from groundplan.maps._map import FREE, OCCUPIED, UNKNOWN
@@ -31,21 +32,6 @@ SMALL: dict[str, Any] = {"width": 26.0, "depth": 20.0, "scan_every": 0.5, "beams
 @cache
 def small(**changes: Any) -> Simulated:
     return warehouse(seed=7, **(SMALL | changes))
-
-
-def states(simulated: Simulated, points: npt.NDArray[np.float64]) -> npt.NDArray[np.uint8]:
-    """The map's state at points of the map frame."""
-    m = simulated.map
-    index = np.floor((points - np.array(m.origin[:2])) / m.resolution).astype(int)
-    found: npt.NDArray[np.uint8] = m.states[m.pixels[m.height - 1 - index[:, 1], index[:, 0]]]
-    return found
-
-
-def along(p: list[float], q: list[float], every: float = 0.1) -> npt.NDArray[np.float64]:
-    count = max(2, int(math.dist(p, q) / every))
-    share = (np.arange(count)[:, None] + 0.5) / count
-    points: npt.NDArray[np.float64] = np.array(p) + share * (np.array(q) - np.array(p))
-    return points
 
 
 def occupied(simulated: Simulated) -> npt.NDArray[np.float64]:

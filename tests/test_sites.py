@@ -8,8 +8,8 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from _simulated import along, states
 
 from groundplan._errors import ParameterError
 from groundplan.maps._map import FREE, OCCUPIED
@@ -27,19 +27,6 @@ SMALL: dict[str, Any] = {"width": 30.0, "depth": 22.0, "scan_every": 0.6, "beams
 @cache
 def small(**changes: Any) -> Simulated:
     return warehouse(seed=5, **(SMALL | changes))
-
-
-def states(simulated: Simulated, points: npt.NDArray[np.float64]) -> npt.NDArray[np.uint8]:
-    m = simulated.map
-    index = np.floor((points - np.array(m.origin[:2])) / m.resolution).astype(int)
-    found: npt.NDArray[np.uint8] = m.states[m.pixels[m.height - 1 - index[:, 1], index[:, 0]]]
-    return found
-
-
-def along(p: list[float], q: list[float]) -> npt.NDArray[np.float64]:
-    share = (np.arange(max(2, int(math.dist(p, q) / 0.1)))[:, None] + 0.5) / max(2, int(math.dist(p, q) / 0.1))
-    points: npt.NDArray[np.float64] = np.array(p) + share * (np.array(q) - np.array(p))
-    return points
 
 
 KINDS: list[dict[str, Any]] = [

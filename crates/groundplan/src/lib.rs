@@ -27,6 +27,7 @@
 pub mod adjacency;
 pub mod arrangement;
 mod bands;
+mod coverage;
 pub mod directions;
 pub mod gradients;
 pub mod grid;
