@@ -641,13 +641,13 @@ def test_broken_images(tmp_path: Path, data: bytes, code: str, words: tuple[str,
     refused(write_yaml(tmp_path), code, str(path), *words)
 
 
-def png(width: int, height: int, data: bytes) -> bytes:
+def png(width: int, height: int, data: bytes, *, interlaced: bool = False) -> bytes:
     """A grey PNG whose header says this size, whatever its data hold."""
 
     def chunk(kind: bytes, body: bytes) -> bytes:
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
 
-    header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
+    header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, interlaced)
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", data) + chunk(b"IEND", b"")
 
 
@@ -659,8 +659,10 @@ def test_a_png_that_lies_about_its_size(tmp_path: Path) -> None:
 
 def test_a_decompression_bomb_is_refused_and_a_large_map_is_not(tmp_path: Path) -> None:
     path = tmp_path / "map.png"
-    path.write_bytes(png(70000, 70000, zlib.compress(bytes(1000)) + bytes(5_000_000)))
+    path.write_bytes(png(70000, 70000, zlib.compress(bytes(1000)) + bytes(5_000_000), interlaced=True))
     refused(path, "map.too-large", "70000 x 70000", resolution=0.05)
+    path.write_bytes(png(70000, 70000, zlib.compress(bytes(1000)) + bytes(5_000_000)))
+    refused(path, "map.truncated", "0 of 70000 rows", resolution=0.05)
     limit = Image.MAX_IMAGE_PIXELS
     big = Image.new("1", (13500, 13500), 1)  # 182 megapixels, beyond the 179 that Pillow opens
     big.save(path)

@@ -49,7 +49,10 @@ STATES = ("free", "occupied", "unknown")
 NEEDED = {"corridor": ("polygon", "axis", "width"), "junction": ("type", "at")}
 
 #: What can be given for reading a map.
-READING = ("dialect", "unknown", "negate", "mode", "occupied_thresh", "free_thresh", "resolution", "origin")
+READING = (
+    *("dialect", "unknown", "negate", "mode", "occupied_thresh", "free_thresh", "resolution", "origin"),
+    *("topic", "stamp", "band", "min_hits"),
+)
 
 #: A label: ``kind`` and the keys that the survey's format gives that kind. Plain values, as in the JSON.
 Label = dict[str, Any]

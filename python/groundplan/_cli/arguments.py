@@ -197,7 +197,10 @@ def add_reading(own: argparse.ArgumentParser, *, frame: bool) -> None:
     group = own.add_argument_group("reading the map", "What is given here beats what the YAML says.")
     if frame:
         group.add_argument(
-            "--resolution", type=metres_per_pixel, metavar="M", help="metres per pixel; a bare image needs it"
+            "--resolution",
+            type=metres_per_pixel,
+            metavar="M",
+            help="metres per pixel; an image alone needs it (default for a point cloud: 0.05)",
         )
         group.add_argument(
             "--origin",
@@ -229,6 +232,16 @@ def add_reading(own: argparse.ArgumentParser, *, frame: bool) -> None:
     )
     group.add_argument("--occupied-thresh", type=share, metavar="P", help="occupied from this darkness on, 0 to 1")
     group.add_argument("--free-thresh", type=share, metavar="P", help="free up to this darkness, 0 to 1")
+    bag = own.add_argument_group("reading a bag")
+    bag.add_argument("--topic", metavar="NAME", help="the topic with the map (default: the only one, or /map)")
+    bag.add_argument(
+        "--stamp", type=number, metavar="S", help="the map as it was then, by its header, s (default: the last)"
+    )
+    cloud = own.add_argument_group("reading a point cloud", "What no points hit is read as free space.")
+    cloud.add_argument(
+        "--band", type=numbers, nargs=2, metavar=("Z0", "Z1"), help="heights of the points that count, m; always needed"
+    )
+    cloud.add_argument("--min-hits", type=count, metavar="N", help="points that make a pixel occupied (default: 2)")
 
 
 def reading(arguments: argparse.Namespace) -> dict[str, Any]:

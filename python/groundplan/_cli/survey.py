@@ -24,7 +24,12 @@ def fill(own: argparse.ArgumentParser) -> None:
         "Of the parameters, what a flag says beats the file, and the file beats the default; of several flags for one "
         "parameter the last counts. groundplan parameters lists them."
     )
-    own.add_argument("map", metavar="MAP", help="a map_server YAML, or a PGM, PNG, BMP, TIFF or JPEG with --resolution")
+    own.add_argument(
+        "map",
+        metavar="MAP",
+        help="a map_server YAML, an image (PGM, PNG, BMP, TIFF, JPEG), a bag of ROS 1 or 2, a GeoTIFF, a Zarr array or "
+        "a point cloud (LAS, LAZ, E57); its content tells which",
+    )
     own.add_argument(
         "-o",
         "--out",
@@ -137,7 +142,7 @@ def run(arguments: argparse.Namespace) -> None:
         arguments.parser.error(f"--origin has {len(origin)} numbers; it takes 2 or 3: X Y [YAW]")
     name = Path(arguments.map).name
     with terminal.status(arguments.quiet) as status:
-        map = groundplan.read(arguments.map, **given)
+        map = groundplan.read(arguments.map, progress=lambda share: status(f"reading {name}, {share:.0%}"), **given)
         refuse_nothing(map, name)
         found = terminal.working(
             status, f"surveying {name}", lambda: groundplan.survey(map, threads=arguments.threads, **chosen)

@@ -1,54 +1,34 @@
-"""From a file or an array to a Map: the one place where picture, YAML, dialect and greys meet."""
+"""From a file or an array to a Map: the door, behind which each source is a module."""
 
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from groundplan._errors import MapError
-from groundplan.maps import _greys as greys
-from groundplan.maps._dialects import (
-    DIALECTS,
-    FREE_PERCENT,
-    FREE_THRESH,
-    OCCUPIED_PERCENT,
-    OCCUPIED_THRESH,
-    Dialect,
-    Meaning,
-    darkness,
-    states_of,
-    tables,
-)
-from groundplan.maps._map import FREE, UNKNOWN, Map, MapWarning
-from groundplan.maps._warnings import (
-    assumed_limits,
-    grey_as_free,
-    nonsense,
-    rounded,
-    shares,
-    unknown_as_free,
-    unknown_as_occupied,
-    walls_as_unknown,
-)
-from groundplan.maps.image import FORMATS, Picture, is_image, look, read_image
-from groundplan.maps.map_server import (
-    Described,
-    check_mode,
-    check_origin,
-    check_resolution,
-    check_threshold,
-    number,
-    read_yaml,
-    shown,
-)
+from groundplan.maps._interpret import Unknown, interpret, meaning_of, weigh
+from groundplan.maps._map import Map
+from groundplan.maps._open import Kind, kind_of
+from groundplan.maps._source import Described, Occupancies, Picture, Progress
+from groundplan.maps._warnings import rounded
+from groundplan.maps.image import read_image
+from groundplan.maps.map_server import check_origin, check_resolution, read_yaml
 
-Unknown = None | str | int | Sequence[int]
-Bytes = npt.NDArray[np.uint8]
+#: What each kind of file is called, and what can be given for it alone.
+_CALLED: dict[Kind, str] = {
+    "yaml": "a map_server YAML",
+    "image": "an image",
+    "tiff": "an image",
+    "bag": "a bag",
+    "zarr": "a Zarr array",
+    "points": "a point cloud",
+}
+_ONLY: dict[str, Kind] = {"topic": "bag", "stamp": "bag", "band": "points", "min_hits": "points"}
 
 
 def read(
@@ -62,18 +42,24 @@ def read(
     mode: str | None = None,
     occupied_thresh: float | None = None,
     free_thresh: float | None = None,
+    topic: str | None = None,
+    stamp: float | None = None,
+    band: Sequence[float] | None = None,
+    min_hits: int | None = None,
+    progress: Progress | None = None,
 ) -> Map:
-    """Read a map: a map_server YAML with its image, or a bare image.
+    """Read a map: a map_server YAML with its image, an image, a bag, a GeoTIFF, a Zarr array or a point cloud.
 
-    What is given here beats what the YAML says. The file is never changed, and an 8-bit PGM is not even read: its
-    pixels are a read-only memory map.
+    What is given here beats what the file says. The file is never changed, and an 8-bit PGM is not even read: its
+    pixels are a read-only memory map. So are those of any other map that is large, in a temporary file without a name.
 
     Parameters
     ----------
     path : path
-        A map_server YAML, or a PGM, PNG, BMP, TIFF, JPEG, PBM or PPM.
+        A map_server YAML; a PGM, PNG, BMP, TIFF, JPEG, PBM or PPM; a ROS 1 bag, a rosbag2 directory or file; a
+        GeoTIFF; a directory with a Zarr array; a LAS, LAZ or E57 file. Which it is, its content tells.
     resolution : float, optional
-        Metres per pixel. A bare image needs it.
+        Metres per pixel. A bare image needs it; a point cloud has 0.05 without it.
     origin : (x, y) or (x, y, yaw), optional
         Pose of the lower left corner of the lower left pixel: metres, metres, radians.
     dialect : {"nav2", "nav2-humble", "ros1"}
@@ -87,7 +73,18 @@ def read(
         How greys become occupancy.
     occupied_thresh, free_thresh : float, optional
         Darkness from which a pixel is occupied and up to which it is free, 0 to 1. Where neither the YAML nor the
-        caller states them and map_saver's 0.65 and 0.196 miss the picture, they are taken from its histogram.
+        caller states them and map_saver's 0.65 and 0.196 miss the picture, they are taken from its histogram. Of
+        occupancies: hundredths of a percent; 0.65 and 0.25 when not given.
+    topic : str, optional
+        Of a bag: the topic with the map, where there are several.
+    stamp : float, optional
+        Of a bag: the map as it was then, by the stamps of the headers, in seconds; the last one without it.
+    band : (low, high), optional
+        Of a point cloud: the heights of the points that count, metres. It needs them.
+    min_hits : int, optional
+        Of a point cloud: how many points make a pixel occupied; 2 without it.
+    progress : callable, optional
+        Is told the share that was read, 0 to 1, where reading takes long.
 
     Returns
     -------
@@ -98,12 +95,19 @@ def read(
     ------
     MapError
         The file is missing, unreadable, not a map, or says what cannot be; the message names file and value.
+    GroundplanError
+        ``extra.missing`` where the library for such files is not installed.
     """
     place = Path(path).expanduser() if str(path).startswith("~") else Path(path)
-    described = _describe(place)
+    kind = kind_of(place)
+    own = {"topic": topic, "stamp": stamp, "band": band, "min_hits": min_hits}
+    _refuse(place, _CALLED[kind], [name for name, value in own.items() if value is not None and _ONLY[name] != kind])
+    metres = None if resolution is None else check_resolution(resolution, "resolution")
+    luma = dialect == "nav2"
+    described = _described(place, kind, own, metres, posed=origin is None, luma=luma, progress=progress)
     warnings = list(described.warnings)
     where = str(place)
-    metres = check_resolution(resolution, "resolution") if resolution is not None else described.resolution
+    metres = described.resolution if metres is None else metres
     if metres is None:
         hint = "--resolution sets it, such as --resolution 0.05"
         raise MapError("map.resolution", f"{where} states no resolution", hint)
@@ -112,15 +116,22 @@ def read(
         pose, odd = check_origin(origin, "origin")
         warnings = [warning for warning in warnings if warning.code != "yaw-nan"] + odd
     if pose is None:
-        if described.image != place:
+        if kind == "yaml":
             raise MapError("map.origin", f"{where} states no origin", "--origin sets it, such as --origin 0 0 0")
         pose = (0.0, 0.0, 0.0)
-    meaning, stated = _meaning(described, dialect, negate, mode, occupied_thresh, free_thresh, where)
-    picture = read_image(described.image, luma=meaning.dialect == "nav2")
-    warnings += picture.warnings
-    if resolution is None:
-        warnings += rounded(metres, picture.pixels.shape)
-    pixels, values, states, odd = _interpret(picture, meaning, stated, unknown)
+    meaning, stated = meaning_of(described, dialect, negate, mode, occupied_thresh, free_thresh, where)
+    content = described.content
+    if content is None:
+        content = read_image(described.image, luma=luma, progress=progress)
+    if isinstance(content, Occupancies):
+        greys = {"unknown": unknown, "negate": negate, "mode": mode}
+        _refuse(place, "made of occupancies", [name for name, value in greys.items() if value is not None])
+        pixels, values, states, odd = weigh(content, meaning, stated)
+    else:
+        warnings += content.warnings
+        pixels, values, states, odd = interpret(content, meaning, stated, unknown)
+    if resolution is None and kind in ("yaml", "image"):
+        warnings += rounded(metres, pixels.shape)
     return Map(pixels, values, states, metres, pose, described.image.name, tuple(warnings + odd))
 
 
@@ -164,190 +175,57 @@ def from_array(
         raise MapError("map.pixels", f"an array of shape {array.shape} is not a map; it needs height x width pixels")
     metres = check_resolution(resolution, "resolution")
     pose, warnings = check_origin(origin, "origin")
-    nothing = Described(Path(image), metres, pose, None, None, None, None)
-    meaning, stated = _meaning(nothing, dialect, negate, mode, occupied_thresh, free_thresh, "from_array")
+    nothing = Described(Path(image), metres, pose)
+    meaning, stated = meaning_of(nothing, dialect, negate, mode, occupied_thresh, free_thresh, "from_array")
     if array.dtype == np.uint8:
-        picture = Picture(array.view(np.uint8))
-        pixels, values, states, odd = _interpret(picture, meaning, stated, unknown)
-        return Map(pixels, values, states, metres, pose, image, tuple(warnings + odd))
-    if array.dtype == np.int8:
-        pixels = array.view(np.uint8)[::-1]
-        values = np.arange(256, dtype=np.uint8).view(np.int8).copy()
-        high = OCCUPIED_PERCENT if occupied_thresh is None else 100.0 * meaning.occupied_thresh
-        low = FREE_PERCENT if free_thresh is None else 100.0 * meaning.free_thresh
+        pixels, values, states, odd = interpret(Picture(array.view(np.uint8)), meaning, stated, unknown)
+    elif array.dtype == np.int8:
+        pixels, values, states, odd = weigh(Occupancies(array.view(np.uint8)[::-1]), meaning, stated)
     elif array.dtype == np.bool_:
-        pixels = array.view(np.uint8)
-        values = np.where(np.arange(256) == 0, 0, 100).astype(np.int8)
-        high, low = OCCUPIED_PERCENT, FREE_PERCENT
+        pixels, values, states, odd = weigh(Occupancies(array.view(np.uint8), certain=True), meaning, (False, False))
     else:
         raise MapError(
             "map.pixels",
             f"an array of {array.dtype} is not a map; it needs uint8 greys, int8 occupancies or bool",
             "convert an OccupancyGrid's data with .astype('int8')",
         )
-    values[(values < 0) | (values > 100)] = -1
-    states = states_of(values, high, low)
-    counts = greys.count(pixels)
-    warnings += nonsense(shares(counts, states), None, None)
-    return Map(pixels, values, states, metres, pose, image, tuple(warnings))
+    return Map(pixels, values, states, metres, pose, image, tuple(warnings + odd))
 
 
-def _describe(path: Path) -> Described:
-    """What the YAML says, or nothing for a bare image."""
-    if path.suffix.lower() in (".yaml", ".yml"):
+def _described(
+    path: Path,
+    kind: Kind,
+    own: dict[str, Any],
+    resolution: float | None,
+    *,
+    posed: bool,
+    luma: bool,
+    progress: Progress | None,
+) -> Described:
+    """What is stated about the map, and its pixels where they come with that."""
+    if kind == "yaml":
         return read_yaml(path)
-    _, start = look(path)
-    if not is_image(start):
-        raise MapError("map.format", f"{path} is not a map: it is neither a map_server YAML nor {FORMATS}")
-    return Described(path, None, None, None, None, None, None)
+    if kind == "bag":
+        from groundplan.maps.bags import read_bag
+
+        return read_bag(path, topic=own["topic"], stamp=own["stamp"], posed=posed, progress=progress)
+    if kind == "tiff":
+        from groundplan.maps.geotiff import is_geotiff, read_geotiff
+
+        if is_geotiff(path):
+            return read_geotiff(path, resolution, posed=posed, luma=luma, progress=progress)
+    if kind == "zarr":
+        from groundplan.maps.zarr_array import read_zarr
+
+        return read_zarr(path, progress=progress)
+    if kind == "points":
+        from groundplan.maps.points import read_points
+
+        return read_points(path, band=own["band"], resolution=resolution, min_hits=own["min_hits"], progress=progress)
+    return Described(path)
 
 
-def _meaning(
-    described: Described,
-    dialect: str,
-    negate: bool | None,
-    mode: str | None,
-    occupied_thresh: float | None,
-    free_thresh: float | None,
-    where: str,
-) -> tuple[Meaning, tuple[bool, bool]]:
-    """How to read the greys, and whether the occupied and the free threshold were stated by anyone."""
-    known: Dialect | None = next((name for name in DIALECTS if name == dialect), None)
-    if known is None:
-        raise MapError("map.dialect", f"dialect {shown(dialect)} is none of {', '.join(DIALECTS)}")
-    high, low = described.occupied_thresh, described.free_thresh
-    if occupied_thresh is not None:
-        high = check_threshold(occupied_thresh, "occupied_thresh", "occupied_thresh")
-    if free_thresh is not None:
-        low = check_threshold(free_thresh, "free_thresh", "free_thresh")
-    stated = high is not None, low is not None
-    # A single stated threshold may lie beyond the other's default.
-    if high is None:
-        high = (1.0 + low) / 2 if low is not None and low >= OCCUPIED_THRESH else OCCUPIED_THRESH
-    if low is None:
-        low = high / 2 if high <= FREE_THRESH else FREE_THRESH
-    if not low < high:
-        raise MapError("map.thresholds", f"{where}: free_thresh {low:g} is not below occupied_thresh {high:g}")
-    chosen = described.mode or "trinary"
-    if mode is not None:
-        chosen = check_mode(mode, "mode")
-    return Meaning(known, chosen, bool(described.negate if negate is None else negate), high, low), stated
-
-
-def _interpret(
-    picture: Picture, meaning: Meaning, stated: tuple[bool, bool], unknown: Unknown
-) -> tuple[Bytes, npt.NDArray[np.int8], Bytes, list[MapWarning]]:
-    """Pixels, tables and warnings of a picture."""
-    chosen = _chosen(unknown)
-    pixels, shades, clear = _with_alpha(picture, meaning)
-    counts, border = greys.count(pixels), _border(pixels)
-    warnings: list[MapWarning] = []
-
-    def reading(of: Meaning) -> tuple[npt.NDArray[np.int8], Bytes, greys.Levels]:
-        values, states = tables(shades, of)
-        values[clear], states[clear] = -1, UNKNOWN
-        if isinstance(chosen, list):
-            set_unknown(values, states, np.isin(np.floor(picture.shades + 0.5), chosen) & ~clear)
-        return values, states, greys.levels(counts, border, darkness(shades, of), states, picture.shades, ~clear)
-
-    def set_unknown(values: npt.NDArray[np.int8], states: Bytes, where: npt.NDArray[np.bool_]) -> None:
-        values[where], states[where] = -1, UNKNOWN
-
-    values, states, levels = reading(meaning)
-    high = low = None
-    if meaning.mode != "raw":
-        high, low = greys.better_occupied_thresh(levels, meaning.free_thresh), greys.better_free_thresh(levels)
-        meaning, assumed = assumed_limits(meaning, stated, high, low)
-        if assumed:
-            warnings += assumed
-            values, states, levels = reading(meaning)
-            high = low = None
-    if meaning.mode != "raw" and chosen is None:
-        level_of = greys.level_of(darkness(shades, meaning))
-        certain, doubtful = greys.unknown_read_as_free(levels)
-        warnings += [grey_as_free(level, levels) for level in doubtful if level < min(certain, default=256)]
-        for level in certain:
-            # What is darker than unknown is not free either.
-            set_unknown(values, states, (level_of >= level - greys.SPIKE) & (states == FREE) & ~clear)
-            warnings.append(unknown_as_free(level, levels, meaning))
-        warnings += [unknown_as_occupied(level, levels, meaning) for level in greys.unknown_read_as_occupied(levels)]
-    if isinstance(chosen, list):
-        occurring = np.unique(np.floor(picture.shades + 0.5)[(counts > 0) & ~clear])
-        absent = [grey for grey in chosen if grey not in occurring]
-        if absent:
-            named = ", ".join(map(str, absent))
-            warnings.append(MapWarning("unknown-absent", f"no pixel has the grey {named} given as unknown"))
-    darker = any(warning.code == "unknown-as-occupied" for warning in warnings)
-    odd = nonsense(shares(counts, states), high, low, walls_darker=darker)
-    if meaning.mode != "raw" and not odd:
-        odd = walls_as_unknown(pixels, counts, states, darkness(shades, meaning))
-    return pixels, values, states, warnings + odd
-
-
-def _chosen(unknown: Unknown) -> list[int] | str | None:
-    """None to find unknown greys, "none" to take none, or the greys given."""
-    if unknown is None or unknown == "auto":
-        return None
-    if isinstance(unknown, str):
-        if unknown == "none":
-            return "none"
-        parts: list[object] = [*re.split(r"[,\s]+", unknown.strip())]
-    else:
-        parts = [*unknown] if isinstance(unknown, Sequence) else [unknown]
-    chosen = []
-    for part in parts:
-        grey = number(part)
-        if grey is None or not 0 <= grey <= 255 or grey != int(grey):
-            raise MapError("map.unknown", f"unknown {shown(part)} is neither none nor a grey between 0 and 255")
-        chosen.append(int(grey))
-    return chosen
-
-
-def _with_alpha(picture: Picture, meaning: Meaning) -> tuple[Bytes, npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
-    """Pixels and shades with alpha worked in, and which pixel values mean transparency.
-
-    Where all is opaque, or alpha belongs to the palette, the tables do it. Otherwise the transparent pixels get a
-    value that means nothing else.
-    """
-    clear = np.zeros(256, np.bool_)
-    pixels, shades = picture.pixels, picture.shades
-    if not picture.has_alpha or meaning.mode == "raw":
-        return pixels, shades, clear
-    if meaning.averages_alpha:
-        if picture.alpha is None:
-            alphas = np.full(256, 255.0) if picture.alphas is None else picture.alphas.astype(np.float64)
-            return pixels, (3.0 * shades + alphas) / 4.0, clear
-        mixed = (3 * pixels.astype(np.uint16) + picture.alpha + 2) // 4
-        return mixed.astype(np.uint8), shades, clear
-    # ROS 1 looks at alpha between the thresholds only, and there at full transparency only.
-    least = 1 if meaning.dialect == "ros1" else 255
-    between = np.ones(256, np.bool_)
-    if meaning.dialect == "ros1":
-        p = darkness(shades, meaning)
-        between = (p >= meaning.free_thresh) & (p <= meaning.occupied_thresh)
-    if picture.alphas is not None:
-        return pixels, shades, (picture.alphas < least) & between
-    if picture.alpha is None:
-        return pixels, shades, clear
-    unused = np.flatnonzero(greys.count(pixels) == 0)
-    spare = int(unused[-1]) if unused.size else _spare(pixels, shades, meaning)
-    hidden = (picture.alpha < least) & between[pixels]
-    if unused.size == 0 and tables(shades, meaning)[0][spare] != -1:
-        # Every value is in use and none means unknown: the rarest joins its neighbour, one grey away.
-        pixels = np.where(pixels == spare, np.uint8(spare - 1 if spare else 1), pixels)
-    clear[spare] = True
-    return np.where(hidden, np.uint8(spare), pixels), shades, clear
-
-
-def _spare(pixels: Bytes, shades: npt.NDArray[np.float64], meaning: Meaning) -> int:
-    """A pixel value for transparency where all 256 are in use: one that means unknown anyway, else the rarest."""
-    unknown = np.flatnonzero(tables(shades, meaning)[0] == -1)
-    return int(unknown[0]) if unknown.size else int(greys.count(pixels).argmin())
-
-
-def _border(pixels: Bytes) -> npt.NDArray[np.int64]:
-    """Histogram of the outermost pixels."""
-    total = np.zeros(256, np.int64)
-    for edge in (pixels[:1], pixels[-1:], pixels[:, :1], pixels[:, -1:]):
-        total += greys.count(edge)
-    return total
+def _refuse(path: Path, called: str, given: list[str]) -> None:
+    """Refuse what says nothing about such a file, rather than pass over it."""
+    if given:
+        raise MapError("map.option", f"{path} is {called}, which {given[0]} says nothing about")

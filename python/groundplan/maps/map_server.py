@@ -8,36 +8,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
 from groundplan._errors import MapError
 from groundplan.maps._dialects import FREE_THRESH, MODES, OCCUPIED_THRESH, Mode
 from groundplan.maps._map import MapWarning
-from groundplan.maps.image import open_file
-
-Origin = tuple[float, float, float]
+from groundplan.maps._open import open_file
+from groundplan.maps._source import Described, Origin
 
 #: A YAML of a map has a few hundred bytes; what is larger is something else.
 LARGEST_YAML = 1 << 20
 
 #: Metres a pixel, and metres from the frame's origin, beyond which a value is a slip and floats lose the centimetre.
 SMALLEST_RESOLUTION, LARGEST_RESOLUTION, FARTHEST_ORIGIN = 1e-6, 1e4, 1e9
-
-
-@dataclass(frozen=True)
-class Described:
-    """What a YAML says. `None` where it says nothing."""
-
-    image: Path
-    resolution: float | None
-    origin: Origin | None
-    negate: bool | None
-    mode: Mode | None
-    occupied_thresh: float | None
-    free_thresh: float | None
-    warnings: tuple[MapWarning, ...] = ()
 
 
 def read_yaml(path: Path) -> Described:
@@ -56,7 +40,7 @@ def read_yaml(path: Path) -> Described:
     if "origin" in fields:
         origin, odd = check_origin(fields["origin"], str(path), exactly=3)
         warnings += odd
-    negate = _negate(path, fields["negate"]) if "negate" in fields else None
+    negate = check_negate(path, fields["negate"]) if "negate" in fields else None
     mode = check_mode(fields["mode"], str(path)) if "mode" in fields else None
     occupied, free = (
         check_threshold(fields[name], name, str(path)) if name in fields else None
@@ -194,8 +178,8 @@ def _image(path: Path, fields: dict[str, object]) -> tuple[Path, list[MapWarning
     raise MapError("map.missing", f"{path} names the image {name}, and {image} does not exist")
 
 
-def _negate(path: Path, value: object) -> bool:
-    """Nav2 takes an int or a bool."""
+def check_negate(path: Path, value: object) -> bool:
+    """Whether white is occupied, or ``map.negate``. Nav2 takes an int or a bool."""
     if isinstance(value, bool):
         return value
     if isinstance(value, str) and value.lower() in ("true", "false", "yes", "no", "on", "off"):

@@ -1,0 +1,243 @@
+"""GeoTIFF, read by `rasterio`: its affine transform is the map's frame, block after block its pixels.
+
+Samples of 8 or 16 bits without a sign are greys, as in any other image; int8 are occupancies, -1 and 0..100.
+
+Source: OGC 19-008r4, GeoTIFF Standard; the affine transform as GDAL gives it.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from groundplan._errors import GroundplanError, MapError
+from groundplan._extras import needed
+from groundplan.maps import _canvas
+from groundplan.maps._canvas import Canvas
+from groundplan.maps._map import MapWarning
+from groundplan.maps._open import open_file
+from groundplan.maps._source import Bytes, Described, Occupancies, Origin, Picture, Progress
+from groundplan.maps.image import grey_of, opened
+from groundplan.maps.map_server import check_resolution
+from groundplan.maps.pgm import sixteen_bits
+
+#: Tags of a frame, of no-data, and of a directory of blocks that only GDAL reads: GeoTIFF 1.1, GDAL.
+GEO_TAGS = (33550, 33922, 34264, 34735, 42113)
+SAMPLE_FORMAT, SIGNED = 339, 2
+WORLD_FILES = (".tfw", ".tifw", ".wld")
+
+#: Sides of a pixel may differ by so much of their length, and its corner from a right angle in radians.
+SQUARE = 1e-6
+
+#: Memory for GDAL's own blocks, in megabytes, and pixels that are read at a time at the least.
+CACHE_MB, AT_A_TIME = 64, 1 << 23
+
+
+def is_geotiff(path: Path) -> bool:
+    """Whether a TIFF needs more than an image reader: it has a frame, signed samples, or too many pixels."""
+    if any(path.with_suffix(suffix).is_file() for suffix in WORLD_FILES):
+        return True
+    with open_file(path) as file, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            image: Any = opened(file, "TIFF")
+        except Exception:  # whatever is wrong with it: GDAL may know the format, Pillow does not
+            return file.seek(0) == 0 and file.read(3)[2:] == b"+"
+        tags = image.tag_v2
+        large = image.width * image.height > _canvas.IN_MEMORY
+        return large or any(tag in tags for tag in GEO_TAGS) or SIGNED in tags.get(SAMPLE_FORMAT, ())
+
+
+def read_geotiff(
+    path: Path,
+    resolution: float | None = None,
+    *,
+    posed: bool = True,
+    luma: bool = True,
+    progress: Progress | None = None,
+) -> Described:
+    """Read a GeoTIFF, with a coordinate reference system or without.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    resolution : float, optional
+        Metres a pixel, where it is given beside the file.
+    posed : bool
+        Whether the file's own origin is wanted; where neither that nor its resolution is, its frame is not looked at.
+    luma : bool
+        How colour becomes grey, as in `read_image`.
+
+    Raises
+    ------
+    MapError
+        ``map.corrupt``, ``map.pixels``, ``map.scratch``; ``map.resolution`` where the pixels are not square or not
+        measured in metres.
+    GroundplanError
+        ``extra.missing``.
+    """
+    rasterio = needed("rasterio", "gis")
+    try:
+        with warnings.catch_warnings(), rasterio.Env(GDAL_CACHEMAX=CACHE_MB):
+            warnings.simplefilter("ignore")
+            with rasterio.open(path) as data:
+                metres, origin = None, None
+                if (posed or resolution is None) and not data.transform.is_identity:
+                    _refuse_other_units(path, data)
+                    metres, origin, upwards = frame(data.transform, data.height, str(path))
+                else:
+                    upwards = data.transform.determinant > 0 and not data.transform.is_identity
+                content, odd = _content(path, data, luma=luma, progress=progress)
+    except (GroundplanError, MemoryError):
+        raise
+    except Exception as fault:  # GDAL's errors are of many kinds
+        raise MapError("map.corrupt", f"{path} is a damaged TIFF: {' '.join(str(fault).split())}") from fault
+    if upwards:
+        content = _flipped(content)
+    return Described(path, metres, origin if posed else None, warnings=tuple(odd), content=content)
+
+
+def frame(transform: Any, height: int, where: str) -> tuple[float, Origin, bool]:
+    """Metres a pixel, pose of the lower left corner, and whether the first row is the lowest.
+
+    Parameters
+    ----------
+    transform : affine.Affine
+        From column and row to metres: its rotation terms are the yaw.
+    height : int
+        Rows of pixels.
+
+    Raises
+    ------
+    MapError
+        ``map.resolution`` where a pixel is not square.
+    """
+    right, down = (transform.a, transform.d), (transform.b, transform.e)
+    wide, high = math.hypot(*right), math.hypot(*down)
+    along = abs(right[0] * down[0] + right[1] * down[1])
+    if not (wide > 0 and abs(wide - high) <= SQUARE * wide and along <= SQUARE * wide * high):
+        skewed = ", its sides not at right angles" if along > SQUARE * wide * high else ""
+        raise MapError(
+            "map.resolution",
+            f"{where}: a pixel is {wide:.9g} m by {high:.9g} m{skewed}: it is not square",
+            "resample it, such as with gdalwarp -tr 0.05 0.05",
+        )
+    upwards = transform.determinant > 0
+    rows = 0 if upwards else height
+    x, y = transform.c + transform.b * rows, transform.f + transform.e * rows
+    yaw = math.atan2(right[1], right[0])
+    metres = check_resolution(_clean(wide), where)
+    return metres, (_clean(x), _clean(y), round(yaw, 12) + 0.0), upwards
+
+
+def _clean(value: float) -> float:
+    """Without the last digits that sums of floats leave, a nanometre at the most."""
+    return float(f"{round(value, 9):.15g}") + 0.0 if abs(value) >= 1e-3 else value + 0.0
+
+
+def _refuse_other_units(path: Path, data: Any) -> None:
+    """Refuse degrees and feet."""
+    crs = data.crs
+    if crs is None:
+        return
+    if crs.is_geographic:
+        raise MapError(
+            "map.resolution",
+            f"{path} is in degrees ({crs.to_string()}); a map needs metres",
+            "gdalwarp -t_srs EPSG:... brings it into metres; --resolution and --origin set its frame",
+        )
+    try:
+        unit, factor = crs.linear_units_factor
+    except Exception:  # a local system that names no unit
+        return
+    if abs(factor - 1.0) > 1e-12:
+        raise MapError(
+            "map.resolution",
+            f"{path} is in units of {factor:g} m ({unit}); a map needs metres",
+            "gdalwarp -t_srs EPSG:... brings it into metres; --resolution and --origin set its frame",
+        )
+
+
+def _content(
+    path: Path, data: Any, *, luma: bool, progress: Progress | None
+) -> tuple[Picture | Occupancies, list[MapWarning]]:
+    """The pixels, and what was lost."""
+    from rasterio.enums import ColorInterp, MaskFlags
+
+    kinds = set(data.dtypes)
+    alpha = ColorInterp.alpha in data.colorinterp
+    colours = data.count - alpha
+    kind = np.dtype(data.dtypes[0])
+    if (
+        len(kinds) > 1
+        or kind not in (np.uint8, np.int8, np.uint16)
+        or colours not in ((1, 3) if kind == np.uint8 else (1,))
+    ):
+        said = f"{path} has {data.count} bands of {' and '.join(sorted(kinds))}"
+        hint = "gdal_translate -ot Byte -scale makes greys of them"
+        raise MapError("map.pixels", f"{said}; a map needs greys of 8 or 16 bits, or int8 occupancies", hint)
+    masked = MaskFlags.per_dataset in data.mask_flag_enums[0]
+    if masked and kind != np.int8 and data.height * data.width > _canvas.IN_MEMORY:
+        said = f"{path} has {data.width} x {data.height} pixels and a mask beside them"
+        raise MapError("map.too-large", said, "gdal_translate -b 1 -mask none -a_nodata 205 leaves the mask out")
+    nodata = None if data.nodata is None or data.nodata != int(data.nodata) else int(data.nodata)
+    hidden = None
+    with Canvas(path, data.height, data.width, progress) as canvas:
+        for window in _windows(data):
+            top, bands = window.row_off, data.read(list(range(1, colours + 1)), window=window)
+            if masked and kind == np.int8:
+                bands[0][data.read_masks(1, window=window) == 0] = -1
+            canvas.put(top, _as_bytes(bands, luma=luma))
+        pixels = canvas.pixels()
+    if kind == np.int8:
+        return Occupancies(pixels, absent=None if nodata is None else nodata & 255), []
+    if masked:
+        hidden = data.read_masks(1)
+        hidden = None if hidden.min() == 255 else hidden
+    absent = np.zeros(256, np.bool_)
+    most = 255 if kind == np.uint8 else 65535
+    if nodata is not None and 0 <= nodata <= most:
+        absent[(nodata * 255 + most // 2) // most] = True
+    shades, alphas = np.arange(256, dtype=np.float64), None
+    if data.colorinterp[0] == ColorInterp.palette:
+        table = np.array([data.colormap(1).get(k, (0, 0, 0, 255)) for k in range(256)], np.uint8)
+        shades = grey_of(table[:, 0], table[:, 1], table[:, 2], luma=luma).astype(np.float64)
+        alphas = None if table[:, 3].min() == 255 else table[:, 3]
+    found = Picture(pixels, shades, alphas, hidden, masked or alphas is not None, absent)
+    return found, [] if most == 255 else [sixteen_bits(path)]
+
+
+def _windows(data: Any) -> Iterator[Any]:
+    """Bands of whole block rows, each about so many pixels that reading it is worth it."""
+    from rasterio.windows import Window
+
+    block = data.block_shapes[0][0]
+    rows = max(1, AT_A_TIME // (data.width * block)) * block
+    for top in range(0, data.height, rows):
+        yield Window(0, top, data.width, min(rows, data.height - top))
+
+
+def _as_bytes(bands: npt.NDArray[Any], *, luma: bool) -> Bytes:
+    """A byte for each pixel."""
+    if bands.dtype == np.uint16:
+        return np.asarray((bands[0].astype(np.uint32) * 255 + 32767) // 65535, np.uint8)
+    if len(bands) == 3:
+        return grey_of(bands[0], bands[1], bands[2], luma=luma)
+    grey: Bytes = bands[0].view(np.uint8)
+    return grey
+
+
+def _flipped(content: Picture | Occupancies) -> Picture | Occupancies:
+    """The other way up, without copying."""
+    from dataclasses import replace
+
+    if isinstance(content, Occupancies):
+        return replace(content, pixels=content.pixels[::-1])
+    return replace(content, pixels=content.pixels[::-1], alpha=None if content.alpha is None else content.alpha[::-1])
