@@ -29,7 +29,7 @@ from groundplan.maps.pgm import sixteen_bits
 
 #: Tags of a frame, of no-data, and of a directory of blocks that only GDAL reads: GeoTIFF 1.1, GDAL.
 GEO_TAGS = (33550, 33922, 34264, 34735, 42113)
-SAMPLE_FORMAT, SIGNED = 339, 2
+BITS, SAMPLE_FORMAT, SIGNED = 258, 339, 2
 WORLD_FILES = (".tfw", ".tifw", ".wld")
 
 #: Sides of a pixel may differ by so much of their length, and its corner from a right angle in radians.
@@ -51,7 +51,8 @@ def is_geotiff(path: Path) -> bool:
             return file.seek(0) == 0 and file.read(3)[2:] == b"+"
         tags = image.tag_v2
         large = image.width * image.height > _canvas.IN_MEMORY
-        return large or any(tag in tags for tag in GEO_TAGS) or SIGNED in tags.get(SAMPLE_FORMAT, ())
+        signed = SIGNED in tags.get(SAMPLE_FORMAT, ()) and 8 in tags.get(BITS, ())
+        return large or signed or any(tag in tags for tag in GEO_TAGS)
 
 
 def read_geotiff(
