@@ -101,14 +101,21 @@ def name_regions(regions: Sequence[Label], corridors: Sequence[Label], names: Na
     """Names where there is room for them, those of large regions first; a way goes by the names of its corridors."""
     middles = np.array([np.mean(corridor["axis"], axis=0) for corridor in corridors]).reshape(-1, 2)
     line = 1.15 * REGION_TYPE[0] / names.dots
+    aside = [
+        (line * far * x, line * far * y) for far in (1, 2, 4, 8, 16) for x, y in ((0, 1), (0, -1), (2, 0), (-2, 0))
+    ]
     for region in sorted(regions, key=lambda region: -float(region.get("area", 0))):
         name, inside = region.get("name"), closed(np.asarray(region["polygon"], dtype=np.float64))
         if not name or (region.get("use") == "corridor" and inside.contains_points(middles).any()):
             continue
-        near = [np.add(region["at"], [0.0, rows * line]) for rows in (0, 1, -1, 2, -2)]
-        room = [(at, size) for size in REGION_TYPE for at in near if names.fits(at, name, size)]
+        holes = [closed(np.asarray(hole, dtype=np.float64)) for hole in region.get("holes", [])]
+        x, y = region["at"]
+        others = [(x + dx, y + dy) for dx, dy in aside]
+        free = (at for at in others if inside.contains_point(at) and not any(h.contains_point(at) for h in holes))
         # The place that it has is in it; another has to be.
-        if found := next((r for r in room if r[0] is near[0] or inside.contains_point((r[0][0], r[0][1]))), None):
+        places = [(x, y), *free]
+        room = ((at, size) for size in REGION_TYPE for at in places if names.fits(at, name, size))
+        if found := next(room, None):
             names.write(found[0], name, found[1], ink.INK, 8)
 
 

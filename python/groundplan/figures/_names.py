@@ -14,6 +14,8 @@ Points = npt.NDArray[np.float64]
 
 #: Width of a letter and height of a line to the size of the type.
 LETTER, LINE = 0.66, 1.0
+#: Points between two names.
+CLEAR = 1.5
 
 
 class Names:
@@ -36,9 +38,9 @@ class Names:
         """Nothing more is to be written there."""
         self.taken.append(self.box(at, wide, high, angle))
 
-    def fits(self, at: Points, text: str, size: float) -> bool:
+    def fits(self, at: Sequence[float] | Points, text: str, size: float) -> bool:
         """Whether nothing stands where the name would."""
-        x0, x1, y0, y1 = self.box(at, LETTER * size * len(text), LINE * size)
+        x0, x1, y0, y1 = self.box(at, LETTER * size * len(text) + 2 * CLEAR, LINE * size + CLEAR)
         return all(x1 <= a0 or a1 <= x0 or y1 <= b0 or b1 <= y0 for a0, a1, b0, b1 in self.taken)
 
     def write(
