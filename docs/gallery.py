@@ -1,4 +1,4 @@
-"""Draw the survey of every map in ../shared/maps into gallery/, for looking at. Run by `make gallery`.
+"""Draw the survey and the road map of every map in ../shared/maps into gallery/, for looking at. Run by `make gallery`.
 
 The maps are not ours, so the pictures over them stay out of the repository. Names given on the command line choose
 single ones: `make gallery MAPS="svl_warehouse nav2_warehouse"`.
@@ -11,7 +11,8 @@ import sys
 from pathlib import Path
 
 import groundplan
-from groundplan.figures import draw_survey
+from groundplan.figures import draw_road_map, draw_survey
+from groundplan.roadmap import road_map
 
 ROOT = Path(__file__).resolve().parent.parent
 SHARED = Path(os.environ.get("GROUNDPLAN_SHARED", ROOT.parent / "shared"))
@@ -32,6 +33,8 @@ def main(chosen: list[str]) -> None:
             continue  # annotations lie beside some maps, as YAML too
         survey = groundplan.survey(map)
         draw_survey(survey, map, ROOT / "gallery" / f"{name}.png")
+        if survey.of_kind("corridor"):
+            draw_road_map(survey, map, road_map(survey), ROOT / "gallery" / f"{name}-roads.png")
         kinds = ("corridor", "junction", "rack", "region")
         counts = ", ".join(f"{len(survey.of_kind(kind))} {kind}s" for kind in kinds)
         print(f"{name}: {len(survey.directions)} directions, {len(survey.lines)} lines, {counts}")

@@ -89,7 +89,7 @@ def test_no_command_shows_the_help_and_is_wrong_usage(capsys: Capture) -> None:
         ("evaluate", "SURVEY and its TRUTH", "groundplan evaluate --help"),
         ("evaluate s.json t.json --methods paper", "--methods goes with --suite", "groundplan evaluate --help"),
         ("evaluate s.json t.json --suite warehouses", "--suite makes its own surveys", "groundplan evaluate --help"),
-        ("evaluate --suite castles", "no suite 'castles'", "there are: names, offices, rooms, warehouses"),
+        ("evaluate --suite castles", "no suite 'castles'", "there are: names, offices, roadmaps, rooms, warehouses"),
         ("evaluate --suite rooms --maps nowhere", "no maps with a ground truth in nowhere", "--maps DIR"),
         ("simulate office -o x --shape star", "invalid choice: 'star'", "groundplan simulate office --help"),
         ("evaluate --suite warehouses --methods magic", "labels.method cannot be", "paper"),

@@ -23,6 +23,12 @@ SCORES = {
     "mcc": ("agreement on rooms, Matthews", "", 3),
     "rooms": ("rooms", "", 0),
     "regions": ("regions found", "", 0),
+    "joins_missing": ("aisles that meet and are not joined, pairs", "", 0),
+    "joins_extra": ("aisles that are joined and do not meet, pairs", "", 0),
+    "lane_elsewhere_m": ("lanes that follow no aisle", " m", 1),
+    "lane_error_m": ("lanes off their aisle's centre line, at most", " m", 3),
+    "lane_clearance_m": ("from lanes to what is occupied, at least", " m", 3),
+    "node_ratio": ("nodes, of junctions, ends and pick faces", "", 3),
 }
 
 SCORES |= {
@@ -45,6 +51,15 @@ NAMES = {
 }
 #: Of a suite of rooms, in place of those.
 REGIONS = {"iou_1to1": "IoU", "mcc": "MCC", "rooms": "rooms", "regions": "found"}
+#: Of a suite of road maps.
+ROADS = {
+    "joins_missing": "missing",
+    "joins_extra": "extra",
+    "lane_elsewhere_m": "elsewhere",
+    "lane_error_m": "off",
+    "lane_clearance_m": "clear",
+    "node_ratio": "nodes",
+}
 
 
 def fill(own: argparse.ArgumentParser) -> None:
@@ -55,7 +70,9 @@ def fill(own: argparse.ArgumentParser) -> None:
     own.add_argument("--json", action="store_true", help="print the scores as JSON")
     group = own.add_argument_group("a suite of maps")
     group.add_argument(
-        "--suite", metavar="NAME", help="survey and score each of its cases: warehouses, offices, rooms or names"
+        "--suite",
+        metavar="NAME",
+        help="survey and score each of its cases: warehouses, roadmaps, offices, rooms or names",
     )
     group.add_argument(
         "--maps",
@@ -131,7 +148,8 @@ def suite_table(result: dict[str, Any]) -> str:
     rows += [(name, "all", result[key]) for name, key in (("mean", "means"), ("worst", "worst"))]
     below = len(rows) - len(result["cases"])
     known = result["means"][methods[0]]
-    same, apart = ({k: name for k, name in part.items() if k in known} for part in (BEFORE, LABELS | REGIONS | NAMES))
+    mine = LABELS | REGIONS | NAMES | ROADS
+    same, apart = ({k: name for k, name in part.items() if k in known} for part in (BEFORE, mine))
     head = ["case", "kind", *same.values()]
     first = [[name, kind, *_cells(by[methods[0]], same)] for name, kind, by in rows]
     cases = _block("", head, first, below)

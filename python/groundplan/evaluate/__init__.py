@@ -40,7 +40,8 @@ class Case:
     name, kind : str
         What it is called, and the part of the suite that it belongs to, such as ``regular`` or ``hard``.
     place : str
-        What is simulated, ``warehouse`` or ``office``; ``map`` where a map is read.
+        What is simulated, ``warehouse`` or ``office``, and ``roads`` where it is a warehouse whose road map is scored;
+        ``map`` where a map is read.
     options : dict
         Of the simulation, its seed among them; of a map its files, ``map`` and ``truth``.
     """
@@ -176,8 +177,8 @@ def suite(name: str, maps: str | os.PathLike[str] | None = None) -> list[Case]:
     Parameters
     ----------
     name
-        ``warehouses``, ``offices`` and ``names`` (places of which several maps are made) are simulated, ``rooms`` are
-        the maps of Bormann et al. (2016), which are not ours to give away.
+        ``warehouses``, ``roadmaps``, ``offices`` and ``names`` (places of which several maps are made) are simulated,
+        ``rooms`` are the maps of Bormann et al. (2016), which are not ours to give away.
     maps
         Where those lie: ``<name>.yaml`` and ``<name>_furnitures.yaml`` beside ``<name>.gt.png``. By default what the
         environment's GROUNDPLAN_ROOM_MAPS says, or ../shared/maps/bormann.
@@ -192,9 +193,8 @@ def suite(name: str, maps: str | os.PathLike[str] | None = None) -> list[Case]:
     if name == "rooms":
         return _rooms(Path(maps or os.environ.get(MAPS) or _BESIDE))
     text = (resources.files("groundplan.evaluate") / f"{name}.toml").read_text(encoding="utf-8")
-    cases = [
-        Case(case.pop("name"), case.pop("kind"), name.removesuffix("s"), case) for case in tomllib.loads(text)["case"]
-    ]
+    place = "roads" if name == "roadmaps" else name.removesuffix("s")
+    cases = [Case(case.pop("name"), case.pop("kind"), place, case) for case in tomllib.loads(text)["case"]]
     # Of the suite of names a case's kind says what is simulated.
     return [dataclasses.replace(case, place=case.kind) if name == "names" else case for case in cases]
 

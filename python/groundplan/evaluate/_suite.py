@@ -18,8 +18,10 @@ from groundplan import simulate
 from groundplan._errors import GroundplanError
 from groundplan.evaluate import Case, _scores, score, score_regions, suite
 from groundplan.evaluate._names import name_scores
+from groundplan.evaluate._roads import road_scores
 from groundplan.maps import Map, read
 from groundplan.parameters import resolve, table
+from groundplan.roadmap import road_map
 from groundplan.stages import cores
 from groundplan.survey import survey
 
@@ -28,6 +30,10 @@ PRINTED = "paper"
 
 #: Degrees by which the maps of one place are turned against the first.
 _TURNED = 0.5
+
+
+#: In the name of a score that is better the smaller it is.
+LESS = ("error", "extra", "missing", "elsewhere", "ratio")
 
 
 def methods() -> tuple[str, ...]:
@@ -152,6 +158,12 @@ def _case(case: Case, labellers: tuple[str, ...]) -> dict[str, dict[str, Any]]:
         rooms = made.rooms
         assert rooms is not None
         return _each(labellers, made.map, lambda found: _office(found, made, rooms))
+    if case.place == "roads":
+        made = simulate.warehouse(**case.options)
+        return {
+            method: road_scores(road_map(survey(made.map, threads=1, labels_method=method)), made.truth, made.map)
+            for method in labellers
+        }
     map = read(case.options["map"])
     return _each(labellers, map, lambda found: score_regions(found, map, case.options["truth"]))
 
@@ -195,4 +207,4 @@ def _mean(_: str, values: list[float]) -> float:
 
 def _worst(key: str, values: list[float]) -> float:
     """Errors and what is too much are better small, shares better large."""
-    return max(values) if "error" in key or "extra" in key else min(values)
+    return max(values) if any(word in key for word in LESS) else min(values)

@@ -60,12 +60,18 @@ class Option:
 #: Options by name; the flag has dashes for the underscores.
 OPTIONS: dict[str, Option] = {
     "graph": Option(
-        "the graph to write: places (default) or faces, the cells of the subdivision",
+        "the graph to write: places (default), faces (the cells of the subdivision) or roads (the road map)",
         "WHICH",
         "choice",
-        ("places", "faces"),
+        ("places", "faces", "roads"),
     ),
+    "vehicle_width": Option("leave corridors and doors that are narrower out of the road map", "M", "number"),
+    "rules": Option("speeds and one-way lanes by name, from a TOML file", "FILE", "file"),
+    "spurs": Option("lead spurs from the lanes to the pick faces, up to so far before them", "M", "number"),
 }
+
+#: What every format with a road map takes, for `groundplan.roadmap.road_map`.
+ROADS = ("vehicle_width", "rules", "spurs")
 
 FORMATS: dict[str, Format] = {
     form.name: form
@@ -81,18 +87,18 @@ FORMATS: dict[str, Format] = {
         Format(
             "graphml",
             ".graphml",
-            "the graph of places, or of faces, as GraphML",
+            "the graph of places, faces or roads as GraphML",
             "networkx, Gephi, yEd, Cytoscape, igraph",
-            options=("graph",),
+            options=("graph", *ROADS),
             needs=("networkx", "shapely"),
             extra="fleet",
         ),
         Format(
             "json",
             ".graph.json",
-            "the graph of places, or of faces, as node-link JSON",
+            "the graph of places, faces or roads as node-link JSON",
             "networkx, D3, any program",
-            options=("graph",),
+            options=("graph", *ROADS),
             needs=("networkx", "shapely"),
             extra="fleet",
         ),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from groundplan._errors import ParameterError
 from groundplan.export._places import places
 from groundplan.export._text import one_line
+from groundplan.roadmap import road_map
 
 if TYPE_CHECKING:
     import networkx
@@ -14,16 +15,22 @@ if TYPE_CHECKING:
     from groundplan.survey import Survey
 
 
-def graph(survey: Survey, which: str) -> networkx.Graph[Any]:
-    """The graph of that name: ``places`` or ``faces``. Coordinates are the attributes ``x`` and ``y``, metres.
+def graph(survey: Survey, which: str, roads: dict[str, Any]) -> networkx.Graph[Any]:
+    """The graph of that name: ``places``, ``faces``, or ``roads``, which is directed, with the options of `road_map`.
+
+    Coordinates are the attributes ``x`` and ``y``, metres.
 
     Raises
     ------
     ParameterError
         ``export.graph``.
     """
-    if which not in ("places", "faces"):
-        raise ParameterError("export.graph", f"there is no graph {which!r}", "there are places and faces")
+    if which not in ("places", "faces", "roads"):
+        raise ParameterError("export.graph", f"there is no graph {which!r}", "there are places, faces and roads")
+    if which == "roads":
+        made = road_map(survey, **roads).to_networkx()
+        made.graph["map"] = one_line(survey.map.image)
+        return made
     return _places(survey) if which == "places" else _faces(survey)
 
 

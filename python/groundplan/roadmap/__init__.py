@@ -1,0 +1,66 @@
+"""The road map that an integrator would draw by hand: lanes on centre lines, nodes where something is decided.
+
+    from groundplan.roadmap import road_map
+
+    roads = road_map(survey, vehicle_width=1.2, rules="rules.toml")
+
+One node stands at each junction and dead end, one abreast of each pick face where racks tell their bays, one in each
+door and in each room behind one. Where aisles end in a hall, lanes through it join them. Needs shapely and networkx.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from groundplan._errors import ParameterError
+from groundplan._extras import needed
+from groundplan.roadmap._model import Directed, Lane, Node, PickFace, RoadMap, Zone
+
+if TYPE_CHECKING:
+    from groundplan.survey import Survey
+
+__all__ = ["Directed", "Lane", "Node", "PickFace", "RoadMap", "Zone", "road_map"]
+
+
+def road_map(
+    survey: Survey,
+    *,
+    vehicle_width: float | None = None,
+    rules: str | os.PathLike[str] | Sequence[Mapping[str, Any]] | None = None,
+    spurs: float | None = None,
+) -> RoadMap:
+    """The road map of a survey. The same survey and options give the same one.
+
+    Parameters
+    ----------
+    survey
+        Its corridors, junctions, racks, regions and doors are used.
+    vehicle_width
+        Metres; corridors and doors that are narrower are left out.
+    rules
+        Speeds and one-way lanes, as `groundplan.roadmap._rules` describes them: a TOML file, or its entries.
+    spurs
+        Where given, a spur leads square from the lane to each pick face and ends so many metres before it, and the
+        vehicle stands there; else it stands on the lane.
+
+    Raises
+    ------
+    ParameterError
+        ``roads.vehicle_width``, ``roads.spurs``, ``rules.value``.
+    FormatError
+        ``rules.read``.
+    GroundplanError
+        ``extra.missing`` without shapely or networkx.
+    """
+    for name, value in (("vehicle_width", vehicle_width), ("spurs", spurs)):
+        if value is not None and not (math.isfinite(value) and value >= 0):
+            raise ParameterError(f"roads.{name}", f"{name} is {value}", "it is in metres, and not negative")
+    for module in ("shapely", "networkx"):
+        needed(module, "fleet")
+    from groundplan.roadmap._build import build
+    from groundplan.roadmap._rules import rules as read_rules
+
+    return build(survey, read_rules(rules), vehicle_width or 0.0, spurs)

@@ -1,0 +1,199 @@
+"""A survey's road map: stops of corridors, bays and doors, then nodes and lanes with ids."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from groundplan.export._places import Place, main_angle, places
+from groundplan.roadmap import _doors, _faces, _lanes, _open
+from groundplan.roadmap._model import Lane, Node, PickFace, Point, RoadMap, Zone
+from groundplan.roadmap._rules import Rule, ruled
+
+if TYPE_CHECKING:
+    from groundplan.survey import Survey
+
+
+def build(survey: Survey, rules: list[Rule], vehicle_width: float, spurs: float | None) -> RoadMap:
+    """As `groundplan.roadmap.road_map`, its options checked."""
+    made = _Builder(survey, rules, vehicle_width)
+    made.junctions()
+    made.faces(spurs)
+    regions = _doors.Regions(survey, made.places, made.ways)
+    made.doors(regions)
+    made.open_space(regions)
+    made.aisles()
+    return made.road_map()
+
+
+class _Builder:
+    """Nodes and lanes as they are found."""
+
+    def __init__(self, survey: Survey, rules: list[Rule], vehicle_width: float) -> None:
+        self.survey, self.rules, self.vehicle = survey, rules, vehicle_width
+        self.places = places(survey)
+        ways = _lanes.ways([p for p in self.places if self._open(p)])
+        self.ways = {corridor: way for corridor, way in ways.items() if way.width >= vehicle_width}
+        self.nodes: list[Node] = []
+        self.lanes: list[Lane] = []
+        self.picks: list[PickFace] = []
+
+    def _open(self, place: Place) -> bool:
+        return ruled(self.rules, place.name)[1] != "closed"
+
+    def _lane(self, id: str, start: int, end: int, kind: str, place: Place, left: float, right: float) -> None:
+        speed, way = ruled(self.rules, place.name)
+        if start != end:
+            sides = round(left, 6), round(right, 6)
+            self.lanes.append(Lane(id, start, end, kind, place.name, place.label, *sides, speed, way))
+
+    def _node(self, id: str, kind: str, at: Point, name: str, type: str = "", label: int | None = None) -> int:
+        self.nodes.append(Node(id, kind, (round(at[0], 6), round(at[1], 6)), name, type, label))
+        return len(self.nodes) - 1
+
+    def junctions(self) -> None:
+        """A node at each junction, and where a corridor ends."""
+        again: Counter[str] = Counter()
+        for stop in _lanes.stops(self.survey, self.ways):
+            if stop.junction is not None:
+                place = self.places[stop.junction]
+                id, name, type = place.id, place.name, place.use if stop.kind == "junction" else ""
+            else:
+                way = self.ways[stop.corridors[0]]
+                far = "E2" if way.place_of(stop.at)[0] > way.length / 2 else "E1"
+                id, name, type = f"{way.place.id}.{far}", f"{way.place.name} {far}", ""
+            again[id] += 1
+            if again[id] > 1:
+                id, name = f"{id}.{again[id]}", f"{name}.{again[id]}"
+            self._node(id, stop.kind, stop.at, name, type, stop.junction)
+
+    def faces(self, spurs: float | None) -> None:
+        """A stop abreast of each pick face, and a spur to it where these are wanted."""
+        found = _faces.bays(self.survey, self.places, self.ways)
+        for corridor, row in _faces.feet(found).items():
+            way = self.ways[corridor]
+            for number, foot in enumerate(row, 1):
+                id, name = f"{way.place.id}.P{number:02}", f"{way.place.name} P{number:02}"
+                lengths = [abs(bay.left) - (spurs or 0.0) for bay in foot.bays]
+                spurred = spurs is not None and max(lengths) >= _faces.SHORTEST_SPUR_M
+                stop = self._node(id, "foot" if spurred else "pick", way.point(foot.along), name)
+                way.add(way.point(foot.along), stop)
+                for bay, length in zip(foot.bays, lengths, strict=True):
+                    side = math.copysign(1.0, bay.left)
+                    node, rack = stop, self.places[bay.rack]
+                    if spurred and length >= _faces.SHORTEST_SPUR_M:
+                        at = way.point(foot.along, side * length)
+                        node = self._node(f"{bay.id}.stop", "pick", at, bay.id, label=bay.rack)
+                        self._lane(f"{bay.id}.spur", stop, node, "spur", rack, bay.width / 2, bay.width / 2)
+                    heading = math.atan2(side * way.along[0], -side * way.along[1])
+                    self.picks.append(PickFace(bay.id, bay.at, round(heading, 9), node, bay.rack, bay.width))
+
+    def doors(self, regions: _doors.Regions) -> None:
+        """A node in each door, joined to the lane or the room on either side."""
+        doors: dict[int, int] = {}
+        rooms: dict[int, int] = {}
+        found = list(_doors.branches(self.survey, self.places, regions, self.vehicle))
+        # A door that leads nowhere, or from a lane to the same lane, is none.
+        sides = Counter(branch.door for branch in {b.leads_to: b for b in found}.values())
+        for branch in found:
+            door = self.places[branch.door]
+            if not self._open(door) or sides[branch.door] < 2:
+                continue
+            if branch.door not in doors:
+                doors[branch.door] = self._node(door.id, "door", door.centre, door.name, label=door.label)
+            start, half = doors[branch.door], (door.width or 0.0) / 2
+            region = self.places[branch.region]
+            if branch.turn is not None:
+                id = f"{region.id}.{door.id}"
+                turn = self._node(id, "turn", branch.turn, f"{region.name} {door.name}")
+                self._lane(f"{id}.door", start, turn, "door", door, half, half)
+                start = turn
+            end = rooms.get(branch.region)
+            if branch.corridor is not None:
+                end = self._foot(branch.corridor, branch.along, door.id, door.name)
+            if end is None:
+                end = self._node(region.id, "room", region.centre, region.name, region.use, region.label)
+                rooms[branch.region] = end
+            self._lane(f"{self.nodes[start].id}-{self.nodes[end].id}", start, end, "door", door, half, half)
+
+    def _foot(self, corridor: int, along: float, id: str, name: str) -> int:
+        """The stop at a place of a lane: one that is there, or a new one."""
+        way = self.ways[corridor]
+        near = min(way.stops, key=lambda stop: abs(stop[0] - along))
+        if abs(near[0] - along) <= _doors.AT_STOP_M:
+            return near[1]
+        made = self._node(f"{way.place.id}.{id}", "foot", way.point(along), f"{way.place.name} {name}")
+        way.add(way.point(along), made)
+        return made
+
+    def open_space(self, regions: _doors.Regions) -> None:
+        """Lanes from aisles that end in a hall to the next."""
+        for way in self.ways.values():
+            for side in (0, -1):
+                stop = way.stops[side][1]
+                if self.nodes[stop].kind == "end" and self.nodes[stop].label is None:
+                    ahead = _open.goes_on(regions, way, side == -1)
+                    if ahead is not None:
+                        way.stops[side] = (ahead, stop)
+                        self.nodes[stop] = dataclasses.replace(self.nodes[stop], at=way.point(ahead))
+        net = _open.Net(self.nodes, self.lanes, self.ways)
+        found = list(_open.links(regions, self.ways, self.nodes, net, main_angle(self.survey)))
+        for number, link in enumerate(found, 1):
+            if 2 * link.half < self.vehicle:
+                continue
+            id, start, place = f"H{number:02}", link.stop, self.ways[link.corridor].place
+            if link.turn is not None:
+                start = self._node(f"{id}.turn", "turn", link.turn, id)
+                self._lane(f"{id}.1", link.stop, start, "open", place, link.half, link.half)
+            end = self._foot(link.corridor, link.along, id, id)
+            self._lane(f"{id}.{1 + (link.turn is not None)}", start, end, "open", place, link.half, link.half)
+            for node in (link.stop, end):
+                if self.nodes[node].kind == "end":  # the way goes on
+                    self.nodes[node] = dataclasses.replace(self.nodes[node], kind="turn")
+
+    def aisles(self) -> None:
+        """Lanes from each stop of a corridor to the next."""
+        for way in self.ways.values():
+            for number, ((_, a), (_, b)) in enumerate(zip(way.stops, way.stops[1:], strict=False), 1):
+                off = [way.place_of(self.nodes[n].at)[1] for n in (a, b)]
+                left, right = way.width / 2 - max(*off, 0.0), way.width / 2 + min(*off, 0.0)
+                self._lane(f"{way.place.id}.{number}", a, b, "aisle", way.place, max(left, 0.0), max(right, 0.0))
+
+    def road_map(self) -> RoadMap:
+        """What has come together: nodes that a lane joins, and the zones."""
+        joined = {end for lane in self.lanes for end in (lane.start, lane.end)}
+        kept = [n for n in range(len(self.nodes)) if n in joined]
+        place = {old: new for new, old in enumerate(kept)}
+        lanes = [dataclasses.replace(lane, start=place[lane.start], end=place[lane.end]) for lane in self.lanes]
+        faces = [PickFace(f.id, f.at, f.heading, place[f.node], f.rack, f.width) for f in self.picks if f.node in place]
+        return RoadMap([self.nodes[n] for n in kept], lanes, faces, list(self._zones()))
+
+    def _zones(self) -> list[Zone]:
+        found = []
+        angle = main_angle(self.survey)
+        for place in self.places:
+            if place.kind == "rack" and place.shape is not None:
+                found.append(Zone(f"{place.id}.keep", "keep-out", place.name, _ring(place), place.label))
+            elif place.kind == "pillar" and place.width:
+                ring = _square(place.centre, place.width, angle)
+                found.append(Zone(f"{place.id}.keep", "keep-out", place.name, ring, place.label))
+            elif place.kind == "corridor" and place.shape is not None and place.label in self.ways:
+                speed, _ = ruled(self.rules, place.name)
+                if speed is not None:
+                    found.append(Zone(f"{place.id}.speed", "speed", place.name, _ring(place), place.label, speed))
+        return found
+
+
+def _ring(place: Place) -> list[Point]:
+    import shapely
+
+    ring = shapely.orient_polygons(place.shape).exterior.coords[:-1]
+    return [(float(x), float(y)) for x, y in ring]
+
+
+def _square(at: Point, side: float, angle: float) -> list[Point]:
+    cos, sin = side / 2 * math.cos(angle), side / 2 * math.sin(angle)
+    corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    return [(round(at[0] + a * cos - b * sin, 6), round(at[1] + a * sin + b * cos, 6)) for a, b in corners]

@@ -1,0 +1,166 @@
+"""Lanes through doors: from a door to the corridor's lane abreast of it, or into the room behind it."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import shapely
+
+from groundplan.roadmap._lanes import Way
+from groundplan.roadmap._model import Point
+
+if TYPE_CHECKING:
+    from groundplan.export._places import Place
+    from groundplan.survey import Survey
+
+#: What a lane keeps from what is not free, metres; at the door itself the jambs are nearer.
+CLEAR_M = 0.4
+#: A door this near to a stop, along the lane, is reached from that stop, metres.
+AT_STOP_M = 0.3
+#: How far into a room a lane may go straight before it turns, metres, and in which steps.
+STRAIGHT_M, STEP_M = 8.0, 0.25
+#: A turn is worth a detour of so much, metres.
+TURN_M = 2.0
+#: A lane that runs through a region for longer than this is one of its lanes, metres.
+THROUGH_M = 0.3
+
+
+@dataclass(frozen=True)
+class Branch:
+    """The way from a door into the region on one side: to a corridor's lane, or to the region's own node.
+
+    `turn` is where it turns, None where it is straight.
+    """
+
+    door: int
+    region: int
+    corridor: int | None
+    along: float
+    turn: Point | None = None
+
+    @property
+    def leads_to(self) -> tuple[int, int, float]:
+        """The door, and what is told apart of where it leads: a corridor's place, or a region."""
+        return (self.door, -1 - self.region, 0.0) if self.corridor is None else (self.door, self.corridor, self.along)
+
+
+def branches(survey: Survey, places: list[Place], regions: Regions, least_m: float) -> Iterator[Branch]:
+    """Both sides of every door that is at least so wide, as far as there is a straight or once bent way from it.
+
+    Doors that lanes run through as it is have none.
+    """
+    for door in places:
+        label = survey.labels[door.label]
+        if door.kind != "door" or (door.width is not None and door.width < least_m) or regions.passed(door):
+            continue
+        for region in dict.fromkeys(label.get("between", ())):
+            found = regions.branch(door, region)
+            if found is not None:
+                yield found
+
+
+class Regions:
+    """The regions' free space, less what a lane keeps from walls and racks; made when first asked for."""
+
+    def __init__(self, survey: Survey, places: list[Place], ways: dict[int, Way]) -> None:
+        self.places, self.ways = places, ways
+        self.walls = shapely.multilinestrings(shapely.linestrings(survey.walls.points.reshape(-1, 2, 2)))
+        self.racks = shapely.union_all([p.shape for p in places if p.kind == "rack" and p.shape is not None])
+        self.clear: dict[int, Any] = {}
+        #: Corridors by the regions that their lanes run through.
+        self.within: dict[int, list[int]] = {}
+        lines = {corridor: way.line() for corridor, way in ways.items()}
+        self.lines = {corridor: line for corridor, line in lines.items() if line is not None}
+        for place in places:
+            if place.kind == "region" and place.shape is not None:
+                runs = {c: line.intersection(place.shape).length for c, line in self.lines.items()}
+                self.within[place.label] = [c for c, length in runs.items() if length > THROUGH_M]
+
+    def space(self, region: int) -> Any:
+        """Where the middle of a lane may be in a region."""
+        if region not in self.clear:
+            shape = self.places[region].shape.simplify(0.075)  # a pixel's step is no wall
+            shape = shape.buffer(-CLEAR_M).difference(self.racks.buffer(CLEAR_M))
+            shapely.prepare(shape)
+            self.clear[region] = shape
+        return self.clear[region]
+
+    def free(self, region: int, points: list[Point], door: Place | None = None) -> bool:
+        """Whether a line keeps clear of the region's walls, but at its door."""
+        line = shapely.LineString(points)
+        if door is not None:
+            line = line.difference(shapely.Point(door.centre).buffer((door.width or 1.0) / 2 + 2 * CLEAR_M))
+        return line.is_empty or bool(self.space(region).covers(line))
+
+    def open(self, region: int, points: list[Point]) -> bool:
+        """Whether a line keeps clear of all that stands in a region, what is seen of single posts too."""
+        return self.free(region, points) and shapely.LineString(points).distance(self.walls) >= CLEAR_M
+
+    def outside(self, region: int, at: Point) -> bool:
+        """Whether a point lies clearly outside a region."""
+        return bool(self.places[region].shape.distance(shapely.Point(at)) > AT_STOP_M)
+
+    def beside(self, region: int, points: list[Point]) -> float:
+        """The free width on either side of a line in a region."""
+        line, shape = shapely.LineString(points), self.places[region].shape
+        return float(min(line.distance(shape.boundary), line.distance(self.racks)))
+
+    def passed(self, door: Place) -> bool:
+        """Whether a lane runs through a door as it is."""
+        if door.axis is None:
+            return any(line.distance(shapely.Point(door.centre)) < AT_STOP_M for line in self.lines.values())
+        across = shapely.LineString(door.axis)
+        return any(line.intersects(across) for line in self.lines.values())
+
+    def branch(self, door: Place, region: int) -> Branch | None:
+        """The shortest way from a door to a lane in the region, or to its middle where it has no lanes."""
+        if not 0 <= region < len(self.places) or self.places[region].shape is None:
+            return None
+        inward = self._inward(door, region)
+        bends: list[Point | None] = [None, *_ahead(door.centre, inward)]
+        options: list[tuple[float, Branch, list[Point]]] = []
+        for turn in bends:
+            seen = door.centre if turn is None else turn
+            for corridor, along in self._targets(region, seen):
+                at = self.places[region].centre if corridor is None else self.ways[corridor].point(along)
+                points = [door.centre, *([] if turn is None else [turn]), at]
+                length = math.fsum(itertools.starmap(math.dist, itertools.pairwise(points)))
+                cost = length + (0 if turn is None else TURN_M)
+                options.append((cost, Branch(door.label, region, corridor, along, turn), points))
+        options.sort(key=lambda option: option[0])
+        return next((branch for _, branch, points in options if self.free(region, points, door)), None)
+
+    def _targets(self, region: int, seen: Point) -> Iterator[tuple[int | None, float]]:
+        """Places on lanes that a door may be joined to: the one abreast of a point, and the stops at a lane's ends."""
+        if not self.within.get(region):
+            yield None, 0.0
+        for corridor in self.within.get(region, ()):
+            way = self.ways[corridor]
+            along, _ = way.place_of(seen)
+            if way.lies_on_a_lane(along):
+                yield corridor, along
+            for end in (way.stops[0][0], way.stops[-1][0]):
+                yield corridor, end
+
+    def _inward(self, door: Place, region: int) -> Point:
+        """Square to the door, into the region."""
+        if door.axis is None or math.dist(*door.axis) == 0:
+            x, y = self.places[region].centre
+            away = math.dist(door.centre, (x, y)) or 1.0
+            return (x - door.centre[0]) / away, (y - door.centre[1]) / away
+        (x0, y0), (x1, y1) = door.axis
+        length = math.dist(*door.axis)
+        u, v = -(y1 - y0) / length, (x1 - x0) / length
+        shape = self.places[region].shape
+        ahead = [shapely.Point(door.centre[0] + s * u, door.centre[1] + s * v) for s in (0.5, -0.5)]
+        sign = 1.0 if shape.distance(ahead[0]) <= shape.distance(ahead[1]) else -1.0
+        return sign * u, sign * v
+
+
+def _ahead(at: Point, inward: Point) -> Iterator[Point]:
+    for n in range(2, round(STRAIGHT_M / STEP_M) + 1):
+        yield at[0] + n * STEP_M * inward[0], at[1] + n * STEP_M * inward[1]

@@ -1,0 +1,227 @@
+"""The road map: lanes on centre lines, a node where something is decided, and nothing else."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from pathlib import Path
+
+import networkx
+import pytest
+import shapely
+from _exports import GOOD, ODD, demo, jones_farms, odd_names
+from zoo import surveyed
+
+import groundplan
+from groundplan import FormatError, ParameterError, simulate
+from groundplan.evaluate import suite
+from groundplan.evaluate._roads import road_scores
+from groundplan.roadmap import RoadMap, road_map
+
+
+def degree(roads: RoadMap) -> dict[str, int]:
+    """How many lanes meet at each node."""
+    counts = dict.fromkeys((node.id for node in roads.nodes), 0)
+    for lane in roads.lanes:
+        for end in (lane.start, lane.end):
+            counts[roads.nodes[end].id] += 1
+    return counts
+
+
+def with_bays(pitch: float, phase: float = 0.0) -> groundplan.Survey:
+    """The example warehouse, its racks telling their bays."""
+    bays = {"pitch": pitch, "phase": phase}
+    labels = [label | bays if label["kind"] == "rack" else label for label in demo().labels]
+    return dataclasses.replace(demo(), labels=labels)
+
+
+def test_a_warehouse_has_a_node_at_each_junction_and_a_lane_between_neighbours() -> None:
+    roads = road_map(demo())
+    junctions = demo().of_kind("junction")
+    assert len(roads.nodes) == len(junctions) == 15
+    for node in roads.nodes:
+        assert min(math.dist(node.at, junction["at"]) for junction in junctions) < 0.75
+    # Four aisles of two lanes, two cross aisles of four and one of four with its stubs.
+    assert len(roads.lanes) == 20 and networkx.is_strongly_connected(roads.to_networkx())
+
+
+@pytest.mark.parametrize("case", suite("roadmaps")[:2], ids=lambda case: case.name)
+def test_a_simulated_warehouse_s_aisles_are_joined_as_its_truth_joins_them(case: object) -> None:
+    made = simulate.warehouse(**case.options)  # type: ignore[attr-defined]
+    scores = road_scores(road_map(groundplan.survey(made.map, threads=1)), made.truth, made.map)
+    assert scores["joins_missing"] == scores["joins_extra"] == scores["lane_elsewhere_m"] == 0
+    assert scores["lane_error_m"] <= 0.15 and scores["lane_clearance_m"] >= 0.4 and scores["node_ratio"] <= 1.3
+
+
+def test_the_scores_see_what_is_wrong_with_a_road_map() -> None:
+    case = suite("roadmaps")[0]
+    made = simulate.warehouse(**case.options)
+    roads = road_map(groundplan.survey(made.map, threads=1))
+    without = dataclasses.replace(roads, lanes=[lane for lane in roads.lanes if lane.name != "C01"])
+    assert road_scores(without, made.truth, made.map)["joins_missing"] > 0
+    moved = [dataclasses.replace(node, at=(node.at[0] + 0.3, node.at[1] + 0.3)) for node in roads.nodes]
+    assert road_scores(dataclasses.replace(roads, nodes=moved), made.truth, made.map)["lane_error_m"] > 0.25
+    across = dataclasses.replace(roads.lanes[0], start=0, end=len(roads.nodes) - 1)
+    wrong = road_scores(dataclasses.replace(roads, lanes=[*roads.lanes, across]), made.truth, made.map)
+    assert wrong["lane_clearance_m"] < 0.4 and wrong["joins_extra"] + wrong["lane_elsewhere_m"] > 0
+
+
+@pytest.mark.parametrize("which", [*GOOD, *ODD])
+def test_any_survey_has_a_road_map_that_is_whole(which: str) -> None:
+    survey = (GOOD | ODD)[which]()
+    roads = road_map(survey, spurs=0.5)
+    ids = [*(node.id for node in roads.nodes), *(way.id for way in roads.directed())]
+    assert len(set(ids)) == len(ids) and all(id.isascii() and id.isprintable() for id in ids)
+    assert all(count > 0 for count in degree(roads).values())
+    for lane in roads.lanes:
+        assert roads.length(lane) > 0 and lane.left >= 0 and lane.right >= 0
+    assert roads == road_map(groundplan.Survey.from_json(survey.to_json()), spurs=0.5)
+
+
+def test_lanes_lie_on_the_corridors_centre_lines_with_their_free_width() -> None:
+    survey = demo()
+    roads = road_map(survey)
+    for lane in roads.lanes:
+        assert lane.label is not None
+        corridor = survey.labels[lane.label]
+        axis = shapely.LineString(corridor["axis"])
+        for end in (lane.start, lane.end):
+            assert axis.distance(shapely.Point(roads.nodes[end].at)) < 0.15
+        assert lane.left + lane.right == pytest.approx(corridor["width"], abs=0.3)
+
+
+def test_names_run_right_and_up_however_the_map_lies() -> None:
+    roads = road_map(demo())
+    first = [lane for lane in roads.lanes if lane.name == "A01"]
+    assert [lane.id for lane in first] == ["A01.1", "A01.2"]
+    assert roads.nodes[first[0].start].id == "J01" and roads.nodes[first[-1].end].id == "J03"
+    assert {node.id for node in roads.nodes} == {f"J{n:02}" for n in range(1, 16)}
+
+
+def test_bays_have_a_stop_on_the_lane_and_those_across_share_it() -> None:
+    bare, roads = road_map(demo()), road_map(with_bays(2.7))
+    # Three racks of six bays, three of five, each open on both sides.
+    assert len(roads.faces) == 2 * (3 * 6 + 3 * 5) and not any(lane.kind == "spur" for lane in roads.lanes)
+    picks = [node for node in roads.nodes if node.kind == "pick"]
+    assert len(picks) == len(roads.nodes) - len(bare.nodes) <= len(roads.faces)
+    for face in roads.faces:
+        stop = roads.nodes[face.node]
+        away = math.dist(face.at, stop.at)
+        # The stop is square before the face, and on it the lane's middle.
+        ahead = (stop.at[0] + away * math.cos(face.heading), stop.at[1] + away * math.sin(face.heading))
+        assert math.dist(ahead, face.at) < 0.2 and 1.5 < away < 2.5
+    ratio = len(roads.nodes) / (15 + len(roads.faces))
+    assert ratio <= 1.3
+
+
+def test_spurs_lead_square_from_the_lane_to_the_pick_faces() -> None:
+    roads = road_map(with_bays(2.7), spurs=0.6)
+    spurs = [lane for lane in roads.lanes if lane.kind == "spur"]
+    assert len(spurs) == len(roads.faces) == 66
+    main = {lane.name: roads.heading(lane) for lane in roads.lanes if lane.kind == "aisle"}
+    for spur in spurs:
+        assert abs(math.cos(roads.heading(spur) - main["A02"])) < 0.02
+    for face in roads.faces:
+        assert math.dist(face.at, roads.nodes[face.node].at) == pytest.approx(0.6, abs=0.15)
+
+
+def test_a_rack_s_phase_moves_its_bays() -> None:
+    at = {face.id: face.at for face in road_map(with_bays(2.7)).faces}
+    moved = {face.id: face.at for face in road_map(with_bays(2.7, 0.5)).faces}
+    for id in at.keys() & moved.keys():
+        assert math.dist(at[id], moved[id]) == pytest.approx(0.5, abs=1e-6)
+    assert at and min(id.rpartition(".")[2] for id in at) == "L01"
+
+
+def test_what_a_vehicle_does_not_fit_is_left_out() -> None:
+    whole = road_map(demo())
+    widths = sorted(label["width"] for label in demo().of_kind("corridor"))
+    some = road_map(demo(), vehicle_width=(widths[2] + widths[3]) / 2)
+    assert {lane.name for lane in some.lanes} < {lane.name for lane in whole.lanes}
+    assert all(lane.left + lane.right > widths[2] for lane in some.lanes)
+    assert road_map(demo(), vehicle_width=50.0).nodes == []
+
+
+def test_rules_set_speeds_and_one_way_lanes_by_name(tmp_path: Path) -> None:
+    file = tmp_path / "rules.toml"
+    file.write_text(
+        '[[rule]]\nname = "A*"\nspeed = 1.5\n[[rule]]\nname = "A02"\nway = "backward"\nspeed = 1\n'
+        '[[rule]]\nname = "A04"\nway = "closed"\n'
+    )
+    roads = road_map(demo(), rules=file)
+    by_name = {lane.name: (lane.speed, lane.way) for lane in roads.lanes}
+    assert by_name["A01"] == (1.5, "both") and by_name["A02"] == (1.0, "backward") and "A04" not in by_name
+    assert by_name["C01"] == (None, "both")
+    ways = [way.id for way in roads.directed() if way.lane.name == "A02"]
+    assert ways == ["A02.1r", "A02.2r"]
+    assert {zone.speed for zone in roads.zones if zone.kind == "speed"} == {1.5, 1.0}
+
+
+@pytest.mark.parametrize(
+    ("rule", "said"),
+    [
+        ({"speed": 0}, "the speed of rule 1 is 0"),
+        ({"speed": "fast"}, "the speed of rule 1 is 'fast'"),
+        ({"way": "up"}, "the way of rule 1 is 'up'"),
+        ({"nam": "A01"}, "rule 1 has a 'nam'"),
+        ({"name": 3}, "the name of rule 1 is 3"),
+    ],
+)
+def test_a_rule_that_is_none_is_refused_by_its_value(rule: dict[str, object], said: str) -> None:
+    with pytest.raises(ParameterError, match=said):
+        road_map(demo(), rules=[rule])
+
+
+def test_a_file_of_rules_that_is_none_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match="does not exist"):
+        road_map(demo(), rules=tmp_path / "none.toml")
+    (tmp_path / "bad.toml").write_text("[[rule]\n")
+    with pytest.raises(FormatError, match=r"bad\.toml"):
+        road_map(demo(), rules=tmp_path / "bad.toml")
+    (tmp_path / "other.toml").write_text("speed = 3\n")
+    with pytest.raises(ParameterError, match="there is no 'speed' among rules"):
+        road_map(demo(), rules=tmp_path / "other.toml")
+
+
+@pytest.mark.parametrize("option", ["vehicle_width", "spurs"])
+def test_a_length_that_is_none_is_refused(option: str) -> None:
+    with pytest.raises(ParameterError, match=option):
+        road_map(demo(), **{option: float("nan")})  # type: ignore[arg-type]
+
+
+def test_racks_are_kept_out_of() -> None:
+    zones = [zone for zone in road_map(demo()).zones if zone.kind == "keep-out"]
+    assert [zone.label for zone in zones] == [n for n, x in enumerate(demo().labels) if x["kind"] == "rack"]
+    for zone in zones:
+        assert shapely.LinearRing(zone.ring).is_ccw and shapely.Polygon(zone.ring).is_valid
+
+
+def test_rooms_are_reached_through_their_doors() -> None:
+    survey = surveyed("rows_of_offices")
+    roads = road_map(survey)
+    rooms = [node for node in roads.nodes if node.kind == "room"]
+    doors = [node for node in roads.nodes if node.kind == "door"]
+    assert len(rooms) == len(doors) == 6
+    assert networkx.is_strongly_connected(roads.to_networkx())
+    walls = shapely.multilinestrings(shapely.linestrings(survey.walls.points.reshape(-1, 2, 2)))
+    for lane in roads.lanes:
+        line = shapely.LineString([roads.nodes[lane.start].at, roads.nodes[lane.end].at])
+        at_doors = shapely.union_all([shapely.Point(door.at).buffer(0.6) for door in doors])
+        assert line.difference(at_doors).distance(walls) >= 0.3
+
+
+def test_no_door_is_drawn_where_a_lane_runs_through_it_as_it_is() -> None:
+    survey = jones_farms()
+    roads = road_map(survey)
+    lanes = [lane for lane in roads.lanes if lane.kind == "aisle"]
+    lines = [shapely.LineString([roads.nodes[lane.start].at, roads.nodes[lane.end].at]) for lane in lanes]
+    for node in roads.nodes:
+        if node.kind == "door":
+            assert min(line.distance(shapely.Point(node.at)) for line in lines) > 0.3
+    graph = roads.to_networkx().to_undirected()
+    assert len(max(networkx.connected_components(graph), key=len)) > 0.85 * len(graph)
+
+
+def test_names_of_any_kind_give_ids_of_ascii() -> None:
+    roads = road_map(odd_names())
+    assert all(node.id.isascii() for node in roads.nodes) and len(roads.nodes) == 15
