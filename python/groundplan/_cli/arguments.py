@@ -14,6 +14,7 @@ from groundplan._errors import MapError
 
 COMMANDS = {
     "survey": "find the directions, walls, corridors and junctions of a map",
+    "watch": "keep a survey of a live topic up to date",
     "figures": "draw the paper's figures from a saved survey",
     "export": "write a saved survey for CAD, fleets, warehouse systems and other programs",
     "simulate": "make a map of a place that never was, with its truth",

@@ -51,6 +51,12 @@ def fill(own: argparse.ArgumentParser) -> None:
         help="print the survey instead of the summary, and write files only where -o, --figures or --export asks",
     )
     own.add_argument("-q", "--quiet", action="store_true", help="no summary, no warnings: only errors are told")
+    add_method(own)
+    add_reading(own, frame=True)
+
+
+def add_method(own: argparse.ArgumentParser) -> None:
+    """Flags for how a map is surveyed."""
     own.add_argument("--threads", type=count, metavar="N", help="at most so many; any number gives the same survey")
     group = own.add_argument_group("the method")
     either = group.add_mutually_exclusive_group()
@@ -74,7 +80,6 @@ def fill(own: argparse.ArgumentParser) -> None:
     )
     group.add_argument("--set", action=_Set, metavar="NAME=VALUE", help="any parameter; repeatable")
     group.add_argument("--config", metavar="FILE", help="parameters from a TOML file")
-    add_reading(own, frame=True)
 
 
 #: A flag that says one thing of two takes the other back, wherever the file says that.
