@@ -21,7 +21,7 @@ PUBLISHED = "/groundplan/survey"
 
 def fill(own: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    own.usage = "groundplan watch [--topic NAME] [-o DIR] [--once] [--timeout S] [--publish] [flags]"
+    own.usage = "groundplan watch [--topic NAME] [-o DIR] [--once] [--publish] [flags]"
     own.epilog = (
         "It listens on the network that CYCLONEDDS_URI names, without a ROS installation. survey.json is put in place "
         "whole with each change: whoever reads it never sees half of one."
