@@ -71,6 +71,24 @@ def test_no_corridor_runs_through_a_closed_wall(wall: int) -> None:
     assert ends[0][1] == pytest.approx(19.0, abs=0.3) and ends[1][0] == pytest.approx(19.0, abs=0.6)
 
 
+def corridor_and_room(opening: int) -> npt.NDArray[np.uint8]:
+    """A corridor of 30 m by 2.2 m and beside its middle a space of 3 m by 7 m that opens to it over so many pixels."""
+    picture = np.full((240, 640), 205, np.uint8)
+    picture[18:66, 18:622] = 0
+    picture[66:212, 286:350] = 0
+    picture[20:64, 20:620] = 254
+    picture[66:210, 288:348] = 254
+    picture[64:66, 318 - opening // 2 : 318 + opening // 2] = 254
+    return picture
+
+
+@pytest.mark.parametrize(("opening", "corridors"), [(18, 1), (60, 2)])
+def test_a_space_behind_a_door_is_a_room_and_not_a_corridor(opening: int, corridors: int) -> None:
+    survey = groundplan.survey(corridor_and_room(opening), resolution=0.05)
+    assert len(survey.of_kind("corridor")) == corridors
+    assert [label["type"] for label in survey.of_kind("junction") if label["type"] != "end"] == ["T"] * (corridors - 1)
+
+
 @pytest.mark.parametrize("method", ["strips", "paper"])
 def test_the_paper_and_its_successor_on_a_crossing(method: str) -> None:
     survey = groundplan.survey(zoo.ZOO["crossing"](), resolution=zoo.RESOLUTION, labels_method=method)

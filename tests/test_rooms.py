@@ -150,3 +150,12 @@ def test_any_grid_has_an_answer() -> None:
             picture = np.where(chance < share, FREE, np.where(chance < 0.9, OCCUPIED, UNKNOWN)).astype(np.uint8)
             assert survey(picture).problems() == []
             assert drawn(survey(picture), shape).max(initial=0) <= 1
+
+
+@pytest.mark.parametrize(("jut", "doors"), [(0, 0), (13, 1)])
+def test_between_niches_a_corridor_has_no_door_unless_its_walls_jut_out(jut: int, doors: int) -> None:
+    plan = Canvas(520, 94).room(10, 20, 510, 70)
+    for left, right in ((190, 250), (258, 318)):
+        plan.room(left, 8, right, 82).box(left, 20, right, 70, FREE)
+    plan.box(250, 8, 258, 23 + jut).box(250, 67 - jut, 258, 82).box(250, 23 + jut, 258, 67 - jut, FREE)
+    assert len(survey(plan.picture).of_kind("door")) == doors

@@ -5,8 +5,8 @@
 //! Gaps in a side shorter than a rack's bay are the bay; longer ones are where other ways open. Of strips that overlap
 //! the one with the most wall along it is kept, and the others keep what is left of them.
 
-use super::Evidence;
 use super::turned::Turned;
+use super::{Evidence, barriers};
 use crate::parameters::Parameters;
 
 /// A strip of free space along one direction, in the direction's own places (metres along and across).
@@ -180,10 +180,11 @@ impl<'a> Family<'a> {
         let (blocked, closed) = (view.all_blocked(within[0], within[1]), view.all_closed(within[0], within[1]));
         let beyond = beyond.map(|[low, high]| view.all_blocked(low, high));
         let holds = |n: usize, c: usize| sides[n].walls[c] || beyond[n][c] > BEYOND;
+        let barriers = barriers::across(view, across, 0..view.size[0]);
         (0..view.size[0])
             .map(|c| Column {
                 blocked: blocked[c],
-                closed: closed[c],
+                closed: closed[c] || barriers[c],
                 parted: parts.iter().any(|part| part.faces[c]),
                 walled: holds(0, c) && holds(1, c),
                 near: sides.iter().any(|side| side.near[c]),

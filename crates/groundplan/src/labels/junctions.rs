@@ -1,8 +1,8 @@
 //! II-E: junctions, where corridors meet; their type is the number of ways out.
 
-use super::JunctionKind;
 use super::corridors::Strip;
 use super::turned::Turned;
+use super::{JunctionKind, barriers};
 use crate::grid::{angle_between, turned};
 use crate::subdivision::distance;
 
@@ -122,6 +122,11 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
         if (view.column(from)..=view.column(to)).any(closed) {
             return None;
         }
+        let columns = view.column(from)..view.column(to) + 1;
+        let has_door = barriers::across(view, strip.across, columns.clone()).contains(&true);
+        if has_door || !barriers::stops(view, strip.across, columns).is_empty() {
+            return None;
+        }
         for (goes_on, heading) in [
             (strip.along[0] <= u - reach[n] - ARM, view.angle + std::f64::consts::PI),
             (strip.along[1] >= u + reach[n] + ARM, view.angle),
@@ -136,6 +141,8 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
 
 /// A corridor's end is looked for so far beyond its walls, metres.
 const LOOK: f64 = 2.0;
+/// It is shut when it is closed within so much, metres.
+const SHUT: f64 = 1.0;
 /// What closes it is this deep, metres, and lies across this share of its width.
 const DEEP: f64 = 0.4;
 const ACROSS: f64 = 0.5;
@@ -154,7 +161,7 @@ pub fn ends(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<(us
                     (strip.along[side] - u) * sign < meeting.reach[p.min(1)] + ARM
                 })
             });
-            if !met && let Some(place) = closed(view, strip, side, sign) {
+            if !met && let Some(place) = closed(view, strip, side, sign, LOOK) {
                 found.push((n, side, place));
             }
         }
@@ -162,12 +169,22 @@ pub fn ends(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<(us
     found
 }
 
-/// Where what closes a strip beyond one of its ends begins.
-fn closed(view: &Turned, strip: &Strip, side: usize, sign: f64) -> Option<f64> {
+/// True when a wall closes a strip at one of its ends, be there a door in it.
+pub fn is_shut(views: &[Turned], strip: &Strip, side: usize) -> bool {
+    let view = &views[strip.direction];
+    let end = strip.along[side];
+    let [from, to] = [end - SHUT, end + SHUT].map(|u| view.column(u));
+    let sign = if side == 0 { -1.0 } else { 1.0 };
+    closed(view, strip, side, sign, SHUT).is_some()
+        || barriers::across(view, strip.across, from..to + 1).contains(&true)
+}
+
+/// Where what closes a strip so far beyond one of its ends begins.
+fn closed(view: &Turned, strip: &Strip, side: usize, sign: f64, look: f64) -> Option<f64> {
     let cells = |metres: f64| (metres / view.cell).ceil() as i64;
     let last = view.size[0] as i64 - 1;
     let start = view.column(strip.along[side] - 0.5 * sign * view.cell) as i64;
-    let columns = (0..=cells(LOOK)).map(|step| start + step * sign as i64).filter(|c| (0..=last).contains(c));
+    let columns = (0..=cells(look)).map(|step| start + step * sign as i64).filter(|c| (0..=last).contains(c));
     let margin = 0.2 * strip.width();
     let (low, high) = (strip.across[0] + margin, strip.across[1] - margin);
     let first = columns.into_iter().find(|&c| view.is_closed(c as usize, low, high))?;

@@ -1,5 +1,6 @@
 //! II-E: what the parts of the map are.
 
+mod barriers;
 mod corridors;
 mod gates;
 mod junctions;

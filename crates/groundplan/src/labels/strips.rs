@@ -17,6 +17,8 @@ use crate::tiles::Tiles;
 const ALONE: (f64, f64) = (2.0, 5.0);
 /// The corridors along a rack are so many times as long as a gap in it.
 const LONGER: f64 = 1.5;
+/// And one that is shut at both its ends, be it with a door, so many times: less is a room.
+const SHUT: f64 = 4.5;
 /// A corridor that meets one other goes on beyond it for so many times its width, or it is a niche at its side.
 const NICHE: f64 = 1.5;
 
@@ -79,7 +81,8 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
     labels.extend(junctions);
     let squares = squares(evidence, &views, &strips);
     labels.extend(rack_labels(evidence, &views, &rows, &squares));
-    labels.extend(rooms::find(evidence, labels.len(), &racked, &squares));
+    let corridors = rooms::Corridor::among(&labels);
+    labels.extend(rooms::find(evidence, labels.len(), &racked, &corridors, &squares));
     labels
 }
 
@@ -188,6 +191,9 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
             let beyond = strips[n].length() - reach;
             match met.count() {
                 0 | 1 if within_row(&strips, n) => false,
+                0 if junctions::is_shut(views, &strips[n], 0) && junctions::is_shut(views, &strips[n], 1) => {
+                    strips[n].length() >= SHUT * strips[n].width()
+                }
                 0 => strips[n].length() >= ALONE.1.max(ALONE.0 * strips[n].width()),
                 1 => beyond >= NICHE * strips[n].width(),
                 _ => true,

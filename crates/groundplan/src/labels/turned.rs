@@ -5,6 +5,7 @@ use super::Evidence;
 use super::look::Look;
 use crate::bands::map_bands;
 use crate::radiograms::weight;
+use std::ops::Range;
 
 /// Cells of the turned raster are about this large, metres.
 const CELL: f64 = 0.1;
@@ -207,12 +208,12 @@ impl Turned {
 
     /// [`Turned::blocked`] of all columns.
     pub fn all_blocked(&self, low: f64, high: f64) -> Vec<f64> {
-        self.shares(&self.blocked, self.samples.pow(2), low, high)
+        self.shares(&self.blocked, self.samples.pow(2), 0..self.size[0], low, high)
     }
 
     /// [`Turned::is_closed`] of all columns.
     pub fn all_closed(&self, low: f64, high: f64) -> Vec<bool> {
-        let barred = self.shares(&self.barred, 1, low, high);
+        let barred = self.all_barred(0..self.size[0], low, high);
         self.all_blocked(low, high)
             .into_iter()
             .zip(barred)
@@ -220,14 +221,18 @@ impl Turned {
             .collect()
     }
 
-    fn shares(&self, sums: &[u32], samples: u32, low: f64, high: f64) -> Vec<f64> {
+    /// [`Turned::barred`] of a range of columns.
+    pub fn all_barred(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
+        self.shares(&self.barred, 1, columns, low, high)
+    }
+
+    fn shares(&self, sums: &[u32], samples: u32, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
         let (from, to) = self.cells(low, high);
-        let columns = self.size[0];
         if from == to {
-            return vec![1.0; columns];
+            return vec![1.0; columns.len()];
         }
         let count = f64::from((to - from) as u32 * samples);
-        let row = |n: usize| &sums[n * columns..(n + 1) * columns];
+        let row = |n: usize| &sums[n * self.size[0]..][columns.clone()];
         row(to).iter().zip(row(from)).map(|(to, from)| f64::from(to - from) / count).collect()
     }
 

@@ -6,6 +6,7 @@
 //! what lies on both its sides: a door.
 
 mod cells;
+mod corridors;
 mod gaps;
 mod narrows;
 mod outlines;
@@ -16,6 +17,7 @@ use super::{Evidence, Label, Purpose, outline};
 use crate::grid::{State, tidy};
 use crate::subdivision::distance;
 use cells::Rules;
+pub use corridors::Corridor;
 use gaps::Bar;
 use raster::Raster;
 
@@ -96,15 +98,23 @@ pub struct Racked {
     pub grounds: Vec<Vec<[f64; 2]>>,
 }
 
-/// Regions, then the doors between them; `first` is the id of the first of these labels.
-pub fn find(evidence: &Evidence, first: usize, racked: &Racked, squares: &Squares) -> Vec<Label> {
+/// Regions, then the doors between them; `first` is the id of the first of these labels. What runs across one of the
+/// corridors is no door.
+pub fn find(
+    evidence: &Evidence,
+    first: usize,
+    racked: &Racked,
+    corridors: &[Corridor],
+    squares: &Squares,
+) -> Vec<Label> {
     let Some(raster) = Raster::new(evidence.grid) else { return Vec::new() };
     let clearance = raster.clearance();
     let mut bars = bars(evidence, &raster, &clearance);
     bars.retain(|bar| {
-        let middle = [0, 1].map(|axis| f64::midpoint(bar.ends[0][axis], bar.ends[1][axis]));
-        let middle = evidence.grid.frame.to_metres(raster.to_grid(middle));
+        let ends = bar.ends.map(|end| evidence.grid.frame.to_metres(raster.to_grid(end)));
+        let middle = [0, 1].map(|axis| f64::midpoint(ends[0][axis], ends[1][axis]));
         !racked.ways.iter().any(|way| outline::holds(way, middle))
+            && !corridors.iter().any(|corridor| corridor.is_crossed(ends))
     });
     let parameters = evidence.parameters;
     let rules = Rules { openness: parameters.rooms_openness, least_area: parameters.rooms_min_area };

@@ -1,0 +1,62 @@
+//! Walls across a strip that leave no more than a door: a corridor ends there, and a room behind is no part of it.
+
+use super::corridors::runs;
+use super::turned::Turned;
+use std::ops::Range;
+
+/// Such a wall bars more than this share of the strip.
+const BARRED: f64 = 0.55;
+/// And is no thicker than this, metres: what is thicker stands in the way, and one passes by.
+const THICK: f64 = 0.8;
+/// And leaves free no more than a door, metres.
+const DOOR: f64 = 2.5;
+/// What is barred within so much of the strip's sides is the sides, metres.
+const MARGIN: f64 = 0.1;
+
+/// What gets along a strip is so much of it wide.
+const GETS_THROUGH: f64 = 0.35;
+
+/// The columns of a strip in which such a wall stands.
+pub fn across(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
+    let (low, high) = (across[0] + MARGIN, across[1] - MARGIN);
+    let is_door = |barred: f64| barred > BARRED && (1.0 - barred) * (high - low) <= DOOR;
+    let mut flags: Vec<bool> = view.all_barred(range, low, high).into_iter().map(is_door).collect();
+    let longest = (THICK / view.cell).ceil() as usize;
+    for (from, to) in runs(&flags, true) {
+        if to - from > longest {
+            flags[from..to].fill(false);
+        }
+    }
+    flags
+}
+
+/// Where a square of a share of the strip's width, which never turns back, gets no further along it: a wall askew to the
+/// strip bars no column for itself. Beyond each such column it begins anew.
+pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize> {
+    let count = ((across[1] - across[0]) / view.cell).round().max(1.0) as usize;
+    let side = ((GETS_THROUGH * count as f64) as usize).max(1);
+    // For how many columns each place across has been free.
+    let mut free_for = vec![side; count];
+    let mut reached = vec![true; count];
+    let mut found = Vec::new();
+    for c in range {
+        for (n, columns) in free_for.iter_mut().enumerate() {
+            let v = across[0] + n as f64 * view.cell;
+            *columns = if view.barred(c, v, v + view.cell) == 0.0 { *columns + 1 } else { 0 };
+        }
+        let free: Vec<bool> = free_for.iter().map(|columns| *columns >= side).collect();
+        let mut next = vec![false; count];
+        for (from, to) in runs(&free, true) {
+            if to - from >= side && reached[from..to].contains(&true) {
+                next[from..to].fill(true);
+            }
+        }
+        if !next.contains(&true) {
+            found.push(c);
+            free_for.fill(side);
+            next.fill(true);
+        }
+        reached = next;
+    }
+    found
+}

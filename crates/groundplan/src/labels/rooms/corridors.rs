@@ -1,0 +1,58 @@
+//! Corridors as the regions see them: what runs across one at its full width is no door in it.
+
+use super::super::Label;
+use crate::subdivision::distance;
+
+/// What is open over so much of a corridor's width is no door across it,
+const FULL: f64 = 0.75;
+/// but within so many times its width of its ends and of what it meets, where a mouth may be one, over so much.
+const NEAR: f64 = 1.0;
+const FULL_NEAR: f64 = 0.95;
+
+/// A corridor's centre line, its free width, and where it ends and meets others, metres from the line's first end.
+pub struct Corridor {
+    axis: [[f64; 2]; 2],
+    width: f64,
+    stops: Vec<f64>,
+}
+
+impl Corridor {
+    /// The corridors among the labels.
+    pub fn among(labels: &[Label]) -> Vec<Self> {
+        let met_by = |id: usize| {
+            labels.iter().filter_map(move |label| match label {
+                Label::Junction { at, corridors, .. } => corridors.contains(&(id as u32)).then_some(*at),
+                _ => None,
+            })
+        };
+        let corridor = |(id, label): (usize, &Label)| match label {
+            Label::Corridor { axis, width, .. } => {
+                let bare = Self { axis: *axis, width: *width, stops: Vec::new() };
+                let stops = met_by(id).chain(*axis).map(|point| bare.place(point)[0]).collect();
+                Some(Self { stops, ..bare })
+            }
+            _ => None,
+        };
+        labels.iter().enumerate().filter_map(corridor).collect()
+    }
+
+    /// True when a closure with these ends, metres in the map frame, runs across at about the full width.
+    pub fn is_crossed(&self, ends: [[f64; 2]; 2]) -> bool {
+        let [p, q] = ends.map(|end| self.place(end));
+        let along = f64::midpoint(p[0], q[0]);
+        let stop = self.stops.iter().map(|stop| (along - stop).abs()).fold(f64::INFINITY, f64::min);
+        let full = if stop < NEAR * self.width { FULL_NEAR } else { FULL };
+        let across = (q[1] - p[1]).abs();
+        let within = (0.0..=distance(self.axis[0], self.axis[1])).contains(&along);
+        within && p[1] * q[1] < 0.0 && across >= full * self.width && across >= (q[0] - p[0]).abs()
+    }
+
+    /// A point's place along the centre line, from its first end, and across it.
+    fn place(&self, point: [f64; 2]) -> [f64; 2] {
+        let [from, to] = self.axis;
+        let length = distance(from, to).max(1e-9);
+        let [tx, ty] = [0, 1].map(|n| (to[n] - from[n]) / length);
+        let [x, y] = [0, 1].map(|n| point[n] - from[n]);
+        [x * tx + y * ty, y * tx - x * ty]
+    }
+}
