@@ -163,6 +163,13 @@ def outline(label: Label) -> Any:
     return shape if shape is not None and shape.geom_type == "Polygon" and shape.area > 0 else None
 
 
+def square(at: tuple[float, float], side: float, angle: float) -> list[tuple[float, float]]:
+    """The corners of a square about a point, one side along an angle, counter-clockwise."""
+    cos, sin = side / 2 * math.cos(angle), side / 2 * math.sin(angle)
+    corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    return [(round(at[0] + a * cos - b * sin, 6), round(at[1] + a * sin + b * cos, 6)) for a, b in corners]
+
+
 def _meetings(survey: Survey, found: list[Place]) -> list[tuple[int, int]]:
     """Pairs of label ids that adjoin."""
     pairs: set[tuple[int, int]] = set()

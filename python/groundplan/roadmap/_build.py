@@ -7,7 +7,7 @@ import math
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from groundplan.export._places import Place, main_angle, places
+from groundplan.export._places import Place, main_angle, places, square
 from groundplan.roadmap import _doors, _faces, _lanes, _open
 from groundplan.roadmap._model import Lane, Node, PickFace, Point, RoadMap, Zone
 from groundplan.roadmap._rules import Rule, ruled
@@ -177,7 +177,7 @@ class _Builder:
             if place.kind == "rack" and place.shape is not None:
                 found.append(Zone(f"{place.id}.keep", "keep-out", place.name, _ring(place), place.label))
             elif place.kind == "pillar" and place.width:
-                ring = _square(place.centre, place.width, angle)
+                ring = square(place.centre, place.width, angle)
                 found.append(Zone(f"{place.id}.keep", "keep-out", place.name, ring, place.label))
             elif place.kind == "corridor" and place.shape is not None and place.label in self.ways:
                 speed, _ = ruled(self.rules, place.name)
@@ -191,9 +191,3 @@ def _ring(place: Place) -> list[Point]:
 
     ring = shapely.orient_polygons(place.shape).exterior.coords[:-1]
     return [(float(x), float(y)) for x, y in ring]
-
-
-def _square(at: Point, side: float, angle: float) -> list[Point]:
-    cos, sin = side / 2 * math.cos(angle), side / 2 * math.sin(angle)
-    corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
-    return [(round(at[0] + a * cos - b * sin, 6), round(at[1] + a * sin + b * cos, 6)) for a, b in corners]
