@@ -271,3 +271,28 @@ def test_an_output_without_a_name_is_wrong_usage(command: tuple[str, ...], tmp_p
     ran = call(capsys, *command, "-o", "")
     assert ran.code == 2 and "the directory has no name" in one_error(ran)
     assert files(tmp_path) == before
+
+
+@pytest.mark.parametrize(
+    ("name", "start", "library", "extra"),
+    [
+        ("run.bag", b"#ROSBAG V2.0\n", "rosbags", "ros"),
+        ("map.tif", b"II+\0 a large one", "rasterio", "gis"),
+        ("big.zarr", b"", "zarr", "large"),
+        ("scan.laz", b"LASF and points", "laspy", "points"),
+        ("scan.e57", b"ASTM-E57 and points", "pye57", "points"),
+    ],
+)
+def test_the_command_that_installs_what_a_map_needs_is_named(
+    name: str, start: bytes, library: str, extra: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if name.endswith("zarr"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "zarr.json").write_text("{}")
+    else:
+        (tmp_path / name).write_bytes(start)
+    monkeypatch.setitem(sys.modules, library, None)
+    ran = call(capsys, "survey", name, "-o", "out")
+    assert ran.code == 2 and one_error(ran) == f"{library} is not installed"
+    assert f"hint: pip install 'groundplan[{extra}]'" in ran.err
+    assert not (tmp_path / "out").exists()

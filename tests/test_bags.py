@@ -174,7 +174,13 @@ def test_what_says_nothing_about_a_bag_is_refused(tmp_path: Path) -> None:
     bag = made(tmp_path, grid("/map", 1.0, occupancies()))
     refused(bag, "map.option", "negate", negate=True)
     refused(bag, "map.option", "band", band=(0.0, 1.0))
-    refused(write_map(tmp_path), "map.option", "hall.yaml is a map_server YAML", "topic", topic="/map")
+    refused(
+        write_map(tmp_path),
+        "map.option",
+        "topic says nothing about",
+        "hall.yaml: it is a map_server YAML",
+        topic="/map",
+    )
 
 
 @pytest.mark.parametrize("kind", KINDS)

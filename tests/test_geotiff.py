@@ -158,6 +158,15 @@ def test_a_truncated_raster_is_refused(tmp_path: Path) -> None:
     refused(path, "map.corrupt", "map.tif is a damaged TIFF")
 
 
+def test_a_header_that_promises_more_than_its_file_can_hold_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "sparse.tif"
+    layout = {"tiled": True, "blockxsize": 8192, "blockysize": 8192, "SPARSE_OK": True}
+    size = {"count": 1, "dtype": "uint8", "width": 60_000, "height": 60_000}
+    with rasterio.open(path, "w", driver="GTiff", transform=upright(), **size, **layout):
+        pass
+    refused(path, "map.truncated", "60000 x 60000")
+
+
 def test_a_picture_without_a_frame_needs_its_resolution(tmp_path: Path) -> None:
     path = write(tmp_path / "map.tif", hall())
     refused(path, "map.resolution", "states no resolution")

@@ -72,6 +72,8 @@ def test_what_is_no_map_is_refused(tmp_path: Path) -> None:
     refused(write(tmp_path / "zero.zarr", hall(), resolution=0), "map.resolution", "resolution 0")
     refused(write(tmp_path / "where.zarr", hall(), resolution=0.05, origin="here"), "map.origin", "here")
     refused(write(tmp_path / "float.zarr", hall().astype(np.float32), **FRAME), "map.pixels", "float32")
+    zarr.create_array(str(tmp_path / "unwritten.zarr"), shape=(10**6, 10**6), chunks=(512, 512), dtype="u1")
+    refused(tmp_path / "unwritten.zarr", "map.empty", "1000000 x 1000000")
     zarr.create_group(str(tmp_path / "empty.zarr"))
     refused(tmp_path / "empty.zarr", "map.zarr", "without a two-dimensional array")
     broken = write(tmp_path / "broken.zarr", hall(), **FRAME)
@@ -99,3 +101,5 @@ def test_the_program_takes_a_zarr_array_with_no_flag(tmp_path: Path, capsys: pyt
     path = write(tmp_path / "big.zarr", hall(), **FRAME)
     ran = call(capsys, "survey", path, "-o", tmp_path / "out")
     assert ran.code == 0 and (tmp_path / "out" / "survey.json").is_file()
+    # The figures find the array again, though it is a directory.
+    assert call(capsys, "figures", tmp_path / "out", "--format", "png").code == 0

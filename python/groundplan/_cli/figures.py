@@ -97,7 +97,7 @@ def find_map(survey: Survey, path: Path) -> str:
         raise FormatError("survey.source", f"{path} does not say which map it is of", "--map MAP names it")
     # A survey that was printed is of the directory where that was done, maybe one above.
     for seen in (path.resolve().parent, Path(), *path.absolute().parents):
-        if (seen / survey.source).is_file():
+        if (seen / survey.source).exists():
             return os.path.normpath(seen / survey.source)
     raise FormatError(
         "survey.source", f"{path} is of the map {survey.source}, which is not there", "--map MAP says where it is now"

@@ -228,4 +228,4 @@ def _described(
 def _refuse(path: Path, called: str, given: list[str]) -> None:
     """Refuse what says nothing about such a file, rather than pass over it."""
     if given:
-        raise MapError("map.option", f"{path} is {called}, which {given[0]} says nothing about")
+        raise MapError("map.option", f"{given[0]} says nothing about {path}: it is {called}")

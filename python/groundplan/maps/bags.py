@@ -116,8 +116,11 @@ def _opened(path: Path) -> Iterator[tuple[Any, Callable[[bytes, str], Any]]]:
 
             with Reader2(_storage(path)) as two:
                 yield two, _types("LATEST").deserialize_cdr
-    except (GroundplanError, MemoryError, ImportError):
+    except (GroundplanError, ImportError):
         raise
+    except MemoryError as fault:
+        said = f"{path} has messages that do not fit into memory: it is damaged, or its map is too large"
+        raise MapError("map.too-large", said) from fault
     except Exception as fault:  # a damaged bag can trip the reader anywhere
         said = " ".join(str(fault).split()).rstrip(".") or type(fault).__name__
         hint = "what was recorded can often be saved: rosbag reindex (ROS 1), ros2 bag reindex, mcap recover"

@@ -23,7 +23,7 @@ from groundplan.maps._canvas import Canvas
 from groundplan.maps._map import MapWarning
 from groundplan.maps._open import open_file
 from groundplan.maps._source import Bytes, Described, Occupancies, Origin, Picture, Progress
-from groundplan.maps.image import grey_of, opened
+from groundplan.maps.image import grey_of, opened, refuse_growth
 from groundplan.maps.map_server import check_resolution
 from groundplan.maps.pgm import sixteen_bits
 
@@ -89,6 +89,7 @@ def read_geotiff(
         with warnings.catch_warnings(), rasterio.Env(GDAL_CACHEMAX=CACHE_MB):
             warnings.simplefilter("ignore")
             with rasterio.open(path) as data:
+                refuse_growth(path, data.width, data.height, path.stat().st_size)
                 metres, origin = None, None
                 if (posed or resolution is None) and not data.transform.is_identity:
                     _refuse_other_units(path, data)

@@ -119,6 +119,11 @@ def _refuse_bombs(path: Path, image: ImageFile, size: int, kind: str) -> None:
     growth = DEFLATE_GROWTH * 8 if kind == "PNG" else OTHER_GROWTH
     if kind in ("BMP", "PPM") and getattr(image, "tile", None) and image.tile[0][0] == "raw":
         growth = 8 // bits if kind == "PPM" else 8
+    refuse_growth(path, width, height, size, growth)
+
+
+def refuse_growth(path: Path, width: int, height: int, size: int, growth: int = OTHER_GROWTH) -> None:
+    """Refuse more pixels than a file of that size can be decoded to."""
     if width * height > growth * size:
         raise MapError(
             "map.truncated",

@@ -40,6 +40,10 @@ def read_zarr(path: Path, *, progress: Progress | None = None) -> Described:
         if array.ndim != 2 or array.dtype not in (np.uint8, np.int8) or 0 in array.shape:
             said = f"{where} is an array of {array.dtype} and shape {tuple(array.shape)}"
             raise MapError("map.pixels", f"{said}; a map needs height x width of uint8 greys or int8 occupancies")
+        if not array.nchunks_initialized:
+            raise MapError(
+                "map.empty", f"{where} is empty: no chunk of its {array.shape[1]} x {array.shape[0]} pixels is there"
+            )
         pixels = _pixels(path, array, progress)
     except (GroundplanError, MemoryError):
         raise
