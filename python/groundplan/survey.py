@@ -18,6 +18,7 @@ from groundplan._errors import FormatError, MapError
 from groundplan._extras import needed
 from groundplan._files import unreadable, write_text
 from groundplan._format import FORMAT, VERSION, check_format
+from groundplan._shapes import outline
 from groundplan.maps import Map, MapWarning, from_array
 from groundplan.maps.map_server import shown
 from groundplan.parameters import named, resolve
@@ -329,20 +330,20 @@ class Survey(Stage):
     def to_shapely(self) -> dict[str, npt.NDArray[np.object_]]:
         """Geometries in the map frame, in the order of their ids. Needs shapely.
 
-        ``faces`` and ``labels`` are polygons, ``edges`` and ``walls`` line strings, ``vertices`` points.
+        ``faces`` and ``labels`` are polygons, ``edges`` and ``walls`` line strings, ``vertices`` points. A label
+        without a polygon, such as a door, is None.
         """
         shapely = needed("shapely", "geometry")
         cut = self.subdivision
         rings = shapely.linearrings(
             cut.vertices[cut.face_vertices], indices=np.repeat(np.arange(len(cut.areas)), np.diff(cut.face_offsets))
         )
-        labels = [shapely.Polygon(label["polygon"], label.get("holes")) for label in self.labels if "polygon" in label]
         return {
             "faces": shapely.polygons(rings),
             "edges": shapely.linestrings(cut.vertices[cut.edge_vertices]),
             "vertices": shapely.points(cut.vertices),
             "walls": shapely.linestrings(self.walls.points.reshape(-1, 2, 2)),
-            "labels": np.array(labels, dtype=np.object_),
+            "labels": np.array([outline(label) for label in self.labels], dtype=np.object_),
         }
 
 

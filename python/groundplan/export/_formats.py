@@ -70,6 +70,13 @@ OPTIONS: dict[str, Option] = {
     "vehicle_width": Option("leave corridors and doors that are narrower out of the road map", "M", "number"),
     "rules": Option("speeds and one-way lanes by name, from a TOML file", "FILE", "file"),
     "spurs": Option("lead spurs from the lanes to the pick faces, up to so far before them", "M", "number"),
+    "date": Option("the date that the file carries, ISO 8601 (default: SOURCE_DATE_EPOCH, else now)", "DATE"),
+    "anchor": Option(
+        "where the map frame's origin lies, and where its x axis points: degrees clockwise from north",
+        "LAT,LON,HEADING",
+        "numbers",
+    ),
+    "height": Option("how high walls and rooms are, metres; nobody has measured it (default 3)", "METRES", "number"),
 }
 
 #: What every format with a road map takes, for `groundplan.roadmap.road_map`.
@@ -97,6 +104,24 @@ FORMATS: dict[str, Format] = {
             map="may",
         ),
         Format(
+            "geojson",
+            ".local.geojson",
+            "every layer in one collection; with an anchor in true longitude and latitude, and named .geojson",
+            "QGIS, GDAL, web maps",
+            options=("anchor",),
+            needs=("shapely", "pyproj"),
+            extra="gis",
+        ),
+        Format(
+            "gpkg",
+            ".gpkg",
+            "a GeoPackage: faces, regions, corridors, junctions, racks, lines, walls, doors, the graph as layers",
+            "QGIS, GDAL, ArcGIS",
+            options=("date",),
+            needs=("pyogrio", "shapely"),
+            extra="gis",
+        ),
+        Format(
             "graphml",
             ".graphml",
             "the graph of places, faces or roads as GraphML",
@@ -104,6 +129,24 @@ FORMATS: dict[str, Format] = {
             options=("graph", *ROADS),
             needs=("networkx", "shapely"),
             extra="fleet",
+        ),
+        Format(
+            "ifc",
+            ".ifc",
+            "a building model, IFC4: spaces, walls, racks, pillars, doors, space boundaries; heights are invented",
+            "Revit, ArchiCAD, FreeCAD, Bonsai, IfcOpenShell",
+            options=("date", "height"),
+            needs=("ifcopenshell", "shapely"),
+            extra="bim",
+        ),
+        Format(
+            "indoorgml",
+            ".indoor.gml",
+            "IndoorGML 1.1: cells, boundaries, and their dual graph",
+            "research on indoor navigation",
+            options=("graph",),
+            needs=("shapely",),
+            extra="gis",
         ),
         Format(
             "json",

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import shapely
 
+from groundplan._shapes import outline
 from groundplan.export._text import one_line, slug, unique
 
 if TYPE_CHECKING:
@@ -150,17 +151,6 @@ def _place(n: int, id: str, name: str, label: Label) -> Place:
         axis=None if axis is None else [(float(x), float(y)) for x, y in axis],
         width=None if width is None else float(width),
     )
-
-
-def outline(label: Label) -> Any:
-    """A label's polygon with its holes, made valid; None where it has none or an empty one."""
-    if len(label.get("polygon") or ()) < 3:
-        return None
-    shape = shapely.Polygon(label["polygon"], [ring for ring in label.get("holes") or () if len(ring) >= 3])
-    if not shape.is_valid:
-        parts = shapely.get_parts(shapely.make_valid(shape, method="structure", keep_collapsed=False))
-        shape = max(parts, key=lambda part: part.area, default=None)
-    return shape if shape is not None and shape.geom_type == "Polygon" and shape.area > 0 else None
 
 
 def square(at: tuple[float, float], side: float, angle: float) -> list[tuple[float, float]]:
