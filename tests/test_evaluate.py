@@ -75,7 +75,7 @@ def survey_of(true: dict[str, Any], random: np.random.Generator | None = None) -
 def test_a_perfect_survey_scores_full_marks() -> None:
     scores = score(survey_of(truth()), truth())
     error = scores.pop("line_error_m")
-    assert scores == PERFECT
+    assert {key: scores[key] for key in PERFECT} == PERFECT
     assert error < 0.02
 
 
@@ -124,8 +124,8 @@ def test_scores_agree_with_the_published_script() -> None:
     for survey in surveys:
         expected = published.score(survey, truth())
         mine = score(survey, truth())
-        assert mine == expected
-        assert list(mine) == list(expected)
+        assert {key: mine[key] for key in expected} == expected
+        assert list(mine)[: len(expected)] == list(expected)
 
 
 def test_files_are_read_and_what_is_wrong_with_them_is_said(tmp_path: Path) -> None:

@@ -83,6 +83,8 @@ class Survey(Stage):
         As `groundplan.stages` describes them.
     labels : list of dict
         Corridors, junctions: ``kind`` and its keys; an id is a position in this list.
+    patterns : list of dict
+        What recurs among the labels, ``bays`` and ``pillars``: ``labels``, ``angle``, ``pitch`` and ``phase``.
     warnings : list of MapWarning
         Partial trouble, the map's own first.
     source : str or None
@@ -102,6 +104,7 @@ class Survey(Stage):
     walls: Walls
     adjacency: Adjacency
     labels: list[Label]
+    patterns: list[Label] = field(default_factory=list)
     warnings: list[MapWarning] = field(default_factory=list)
     source: str | None = None
     reading: dict[str, Any] = field(default_factory=dict)
@@ -171,6 +174,7 @@ class Survey(Stage):
             "links": rows(faces=dual.faces, edge=dual.edges, connected=dual.connected),
             "walls": rows(points=self.walls.points.reshape(-1, 2, 2), line=self.walls.lines, kind=kinds),
             "labels": self.labels,
+            "patterns": self.patterns,
             "warnings": [{"code": w.code, "message": w.message} for w in self.warnings],
             "evidence": {
                 "histogram": self.directions.histogram.tolist(),
@@ -291,6 +295,7 @@ class Survey(Stage):
                 connected=column(tree["links"], "connected", np.bool_),
             ),
             labels=[checked(label) for label in tree["labels"]],
+            patterns=[checked_pattern(pattern) for pattern in tree.get("patterns", [])],
             warnings=[MapWarning(w["code"], w["message"]) for w in tree["warnings"]],
             source=None if source is None else str(source["file"]),
             reading={} if source is None else checked_reading(source.get("reading", {})),
@@ -408,6 +413,7 @@ def survey(
         parameters=resolve(parameters),
         radiograms=[made(Radiogram, arrays) for arrays in found["radiograms"]],
         labels=found["labels"],
+        patterns=found["patterns"],
         warnings=[*map.warnings, *(MapWarning(code, message) for code, message in found["warnings"])],
         **{name: made(kind, found[name]) for name, kind in stages.items()},
     )
@@ -455,6 +461,25 @@ def checked(label: Any) -> Label:
         if key in ("width", "area"):
             float(value)
     return dict(label)
+
+
+def checked_pattern(pattern: dict[str, Any]) -> Label:
+    """A pattern from a file, held to what its readers count on.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        A part is missing, of another type or of another shape.
+    """
+    if not isinstance(pattern["kind"], str):
+        raise TypeError(f"the kind of a pattern is {pattern['kind']!r}")
+    float(pattern["angle"])
+    for key in ("pitch", "phase"):
+        along, across = pattern[key]
+        for value in (along, across):
+            if value is not None:
+                float(value)
+    return pattern | {"labels": [int(label) for label in pattern["labels"]]}
 
 
 def checked_reading(reading: dict[str, Any]) -> dict[str, Any]:

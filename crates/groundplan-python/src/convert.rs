@@ -4,6 +4,7 @@ use groundplan::adjacency::Adjacency;
 use groundplan::arrangement::NONE;
 use groundplan::directions::Directions;
 use groundplan::gradients::Gradients;
+use groundplan::labels::Pattern;
 use groundplan::lines::Lines;
 use groundplan::occupancy::Occupancy;
 use groundplan::parameters::{Parameter, Range};
@@ -431,16 +432,37 @@ pub fn from_labels<'py>(py: Python<'py>, made: &[Label]) -> PyResult<Vec<Bound<'
                 .with("axis", axis)?
                 .with("width", *width)?
                 .with("between", between)?,
-            Label::Rack { faces, polygon, axis, width, name } => named
+            Label::Rack { faces, polygon, axis, width, pitch, phase, name } => named
                 .with("kind", "rack")?
                 .with("faces", faces)?
                 .with("polygon", polygon)?
                 .with("axis", axis)?
                 .with("width", *width)?
+                .with("pitch", *pitch)?
+                .with("phase", *phase)?
                 .with("name", name)?,
-            Label::Pillar { at, width } => named.with("kind", "pillar")?.with("at", at)?.with("width", *width)?,
+            Label::Pillar { at, width, pattern, name } => named
+                .with("kind", "pillar")?
+                .with("at", at)?
+                .with("width", *width)?
+                .with("pattern", *pattern)?
+                .with("name", name)?,
         };
         Ok(named.done())
+    };
+    made.iter().map(convert).collect()
+}
+
+/// Patterns are few, as labels are.
+pub fn from_patterns<'py>(py: Python<'py>, made: &[Pattern]) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let convert = |pattern: &Pattern| {
+        Ok(Named::new(py)
+            .with("kind", pattern.kind.name())?
+            .with("labels", &pattern.labels)?
+            .with("angle", pattern.angle)?
+            .with("pitch", pattern.pitch)?
+            .with("phase", pattern.phase)?
+            .done())
     };
     made.iter().map(convert).collect()
 }

@@ -64,6 +64,7 @@ mod _core {
             .with("walls", convert::from_walls(py, made.walls)?)?
             .with("adjacency", convert::from_adjacency(py, made.adjacency)?)?
             .with("labels", convert::from_labels(py, &made.labels)?)?
+            .with("patterns", convert::from_patterns(py, &made.patterns)?)?
             .with("warnings", made.warnings.into_iter().map(|w| (w.code, w.message)).collect::<Vec<_>>())?
             .done())
     }

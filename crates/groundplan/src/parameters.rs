@@ -208,6 +208,12 @@ parameters! {
         "A corridor is at least this many times as long as it is wide.";
     labels_square: f64 = 4.0, "labels.square", "m", Range::Number(0.5, 100.0), false, "II-E",
         "Regions, racks and pillars are named by the squares of a grid along the dominant direction; the side of one.";
+    pillars_min_width: f64 = 0.2, "pillars.min_width", "m", Range::Number(0.0, 10.0), false, "II-E",
+        "A pillar is at least this wide.";
+    pillars_max_width: f64 = 1.2, "pillars.max_width", "m", Range::Number(0.0, 10.0), false, "II-E",
+        "A pillar is at most this wide.";
+    pillars_min_pitch: f64 = 2.5, "pillars.min_pitch", "m", Range::Number(0.5, 100.0), false, "II-E",
+        "Pillars that recur do so at least at this pitch.";
     rooms_max_opening: f64 = 3.5, "rooms.max_opening", "m", Range::Number(0.0, 100.0), false, "II-E",
         "A gap in a wall may be a door when it is at most this wide.";
     rooms_openness: f64 = 0.8, "rooms.openness", "", Range::Number(0.1, 1.0), false, "II-E",

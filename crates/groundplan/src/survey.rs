@@ -5,7 +5,7 @@ use crate::arrangement::{Arrangement, arrange};
 use crate::directions::{Directions, find_directions};
 use crate::gradients::{Gradients, find_gradients};
 use crate::grid::Grid;
-use crate::labels::{Evidence, Label, find_labels};
+use crate::labels::{Evidence, Label, Pattern, find_labels, find_patterns};
 use crate::lines::{Lines, find_lines};
 use crate::occupancy::{Occupancy, find_occupancy};
 use crate::parameters::Parameters;
@@ -45,6 +45,8 @@ pub struct Survey {
     pub adjacency: Adjacency,
     /// II-E: what is what.
     pub labels: Vec<Label>,
+    /// What recurs among them.
+    pub patterns: Vec<Pattern>,
     /// Partial trouble.
     pub warnings: Vec<Warning>,
 }
@@ -82,6 +84,7 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
         parameters,
         threads,
     });
+    let patterns = find_patterns(&directions, &labels);
     let warnings = find_warnings(&gradients, &directions, &lines, &labels, parameters);
     debug_assert_eq!(subdivision.problems(), Vec::<String>::new());
     debug_assert_eq!(occupancy.pixels.iter().sum::<u64>(), (frame.width * frame.height) as u64);
@@ -96,6 +99,7 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
         walls,
         adjacency,
         labels,
+        patterns,
         warnings,
     }
 }

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from groundplan._errors import FormatError, ParameterError
 from groundplan._files import unreadable
 from groundplan._format import check_format
-from groundplan.evaluate import _regions, _scores
+from groundplan.evaluate import _patterns, _regions, _scores
 from groundplan.maps import Map
 
 __all__ = ["Case", "score", "score_regions", "suite", "suites"]
@@ -81,6 +81,11 @@ def score(survey: Document, truth: Document) -> dict[str, Any]:
             Share of the true corridors' length, off the junctions, in a corridor whose axis is within 10 degrees.
         corridor_precision
             Share of the corridors' area in true corridors of that axis.
+        pillar_f1 (this and what follows where the truth speaks of ``pillars`` or ``racks``)
+            One-to-one matching within 0.5 m of the truth's ``pillars`` {at, observed}; None without any on either side.
+        pitch_recall, pitch_error_m
+            Share of the racks that lie on a true one of ``racks`` {a, b, pitch} whose pitch is right to 0.05 m, and the
+            median error of those that have one; None without any.
 
     Raises
     ------
@@ -92,7 +97,9 @@ def score(survey: Document, truth: Document) -> dict[str, Any]:
     found = _document(survey, "survey", ("directions", "lines", "labels"))
     check_format(found, f"{Path(survey)}: " if isinstance(survey, str | os.PathLike) else "")
     true = _document(truth, "truth", ("directions", "lines", "corridors", "junctions"))
-    parts = (_scores.direction_scores, _scores.line_scores, _scores.junction_scores, _scores.corridor_scores)
+    parts = [_scores.direction_scores, _scores.line_scores, _scores.junction_scores, _scores.corridor_scores]
+    if "pillars" in true or "racks" in true:
+        parts.append(_patterns.pattern_scores)
     result: dict[str, Any] = {}
     for part in parts:
         try:

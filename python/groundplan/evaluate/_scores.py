@@ -85,7 +85,7 @@ def junction_scores(survey: dict[str, Any], truth: dict[str, Any]) -> dict[str, 
     What lies at a junction that was not observed counts neither way, nor do types that the truth does not speak of.
     """
     asked = [j for j in truth["junctions"] if j.get("observed", True)]
-    unseen = _points([j["at"] for j in truth["junctions"] if not j.get("observed", True)])
+    unseen = points([j["at"] for j in truth["junctions"] if not j.get("observed", True)])
     spoken = {"L", "T", "X"} | {j["type"] for j in asked}
     given = [
         label
@@ -97,21 +97,22 @@ def junction_scores(survey: dict[str, Any], truth: dict[str, Any]) -> dict[str, 
     if not asked or not given:
         agreed = float(len(asked) == len(given))
         return {"junction_f1": agreed, "junction_typed_f1": agreed}
-    apart = np.linalg.norm(_points([j["at"] for j in asked])[:, None] - _points([j["at"] for j in given])[None], axis=2)
+    apart = np.linalg.norm(points([j["at"] for j in asked])[:, None] - points([j["at"] for j in given])[None], axis=2)
     near = apart <= _SAME_PLACE
     alike = np.array([[a["type"] == g["type"] for g in given] for a in asked])
     total = len(asked) + len(given)
     return {
-        "junction_f1": round(2 * _matches(apart, near) / total, 4),
-        "junction_typed_f1": round(2 * _matches(apart, near & alike) / total, 4),
+        "junction_f1": round(2 * matches(apart, near) / total, 4),
+        "junction_typed_f1": round(2 * matches(apart, near & alike) / total, 4),
     }
 
 
-def _points(points: Sequence[Sequence[float]]) -> Floats:
+def points(points: Sequence[Sequence[float]]) -> Floats:
+    """Points as (n, 2)."""
     return np.array(points, dtype=float).reshape(-1, 2)
 
 
-def _matches(apart: Floats, allowed: npt.NDArray[np.bool_]) -> int:
+def matches(apart: Floats, allowed: npt.NDArray[np.bool_]) -> int:
     """Size of the one-to-one matching over allowed pairs that costs least."""
     rows, columns = optional("scipy.optimize").linear_sum_assignment(np.where(allowed, apart, _NO_MATCH))
     return int(allowed[rows, columns].sum())

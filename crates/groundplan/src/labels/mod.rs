@@ -1,6 +1,7 @@
 //! II-E: what the parts of the map are.
 
 mod barriers;
+mod bays;
 mod corridors;
 mod gates;
 mod junctions;
@@ -8,12 +9,17 @@ mod look;
 mod names;
 mod outline;
 mod paper;
+mod patterns;
+mod period;
+mod pillars;
 mod pitch;
 mod places;
 mod racks;
 mod rooms;
 mod strips;
 mod turned;
+
+pub use patterns::{Pattern, PatternKind, find_patterns};
 
 use crate::adjacency::Adjacency;
 use crate::directions::Directions;
@@ -120,6 +126,10 @@ pub enum Label {
         axis: [[f64; 2]; 2],
         /// How deep it is, face to face, metres.
         width: f64,
+        /// From post to post along it, metres, where posts recur.
+        pitch: Option<f64>,
+        /// From the first end of its axis to the first post, metres.
+        phase: Option<f64>,
         /// Such as S2-04.
         name: String,
     },
@@ -129,6 +139,10 @@ pub enum Label {
         at: [f64; 2],
         /// How wide it is, metres.
         width: f64,
+        /// The number of the pattern that it is of.
+        pattern: u32,
+        /// Such as P3-07.
+        name: String,
     },
 }
 

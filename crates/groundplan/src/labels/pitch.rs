@@ -6,7 +6,7 @@ use super::turned::Turned;
 
 /// Lags are counted in steps of this many metres, between the shortest and the longest that are looked at.
 const STEP: f64 = 0.05;
-const LAGS: (f64, f64) = (1.0, 6.5);
+pub const LAGS: (f64, f64) = (1.0, 6.5);
 /// Gradients of this magnitude or less are specks: posts, and the corners of goods.
 const SPECK: u8 = 100;
 /// Specks this near to a line stand on it, metres.
@@ -58,6 +58,14 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     range.into_iter().find(|&lag| top(lag) && smooth[lag] >= FUNDAMENTAL * strongest).map(|lag| lag as f64 * STEP)
 }
 
+/// Places of all specks along and across the view's direction, metres.
+pub fn specks_of<'a>(evidence: &'a Evidence, view: &'a Turned) -> impl Iterator<Item = [f64; 2]> + 'a {
+    let frame = &evidence.grid.frame;
+    let all = evidence.gradients.pixels.iter().zip(&evidence.gradients.magnitudes);
+    let specks = all.filter(|(_, magnitude)| **magnitude <= SPECK);
+    specks.map(|(pixel, _)| view.place(frame.to_metres(pixel.map(|p| f64::from(p) + 0.5))))
+}
+
 /// For each line of the direction, the steps along it at which specks stand, ascending.
 fn specks(evidence: &Evidence, view: &Turned) -> Vec<Vec<i32>> {
     let lines = evidence.lines;
@@ -67,14 +75,10 @@ fn specks(evidence: &Evidence, view: &Turned) -> Vec<Vec<i32>> {
         .collect();
     offsets.sort_by(f64::total_cmp);
     let mut places = vec![Vec::new(); offsets.len()];
-    let frame = &evidence.grid.frame;
-    for (pixel, &magnitude) in evidence.gradients.pixels.iter().zip(&evidence.gradients.magnitudes) {
-        if magnitude <= SPECK {
-            let [u, v] = view.place(frame.to_metres(pixel.map(|p| f64::from(p) + 0.5)));
-            let (from, to) = (offsets.partition_point(|&o| o < v - NEAR), offsets.partition_point(|&o| o <= v + NEAR));
-            for line in &mut places[from..to] {
-                line.push(((u - view.start[0]) / STEP) as i32);
-            }
+    for [u, v] in specks_of(evidence, view) {
+        let (from, to) = (offsets.partition_point(|&o| o < v - NEAR), offsets.partition_point(|&o| o <= v + NEAR));
+        for line in &mut places[from..to] {
+            line.push(((u - view.start[0]) / STEP) as i32);
         }
     }
     for line in &mut places {

@@ -1,13 +1,16 @@
 //! II-E, the successor of Algorithm 1: corridors first, junctions where they meet.
 
+use super::bays;
 use super::corridors::{self, Strip};
 use super::gates;
 use super::junctions::{self, Meeting};
 use super::look::Look;
 use super::names::{Named, names};
+use super::period::Period;
+use super::pillars;
 use super::places::Squares;
 use super::racks::{self, Row};
-use super::rooms::{self, Racked};
+use super::rooms::{self, Racked, Raster};
 use super::turned::Turned;
 use super::{Evidence, JunctionKind, Label, outline};
 use crate::grid::{State, tidy};
@@ -81,8 +84,13 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
     labels.extend(junctions);
     let squares = squares(evidence, &views, &strips);
     labels.extend(rack_labels(evidence, &views, &rows, &squares));
+    let Some(raster) = Raster::new(evidence.grid) else { return labels };
     let corridors = rooms::Corridor::among(&labels);
-    labels.extend(rooms::find(evidence, labels.len(), &racked, &corridors, &squares));
+    labels.extend(rooms::find(evidence, &raster, labels.len(), &racked, &corridors, &squares));
+    let wider = |[low, high]: [f64; 2]| [low - pillars::RIM, high + pillars::RIM];
+    let rack = |row: &Row| rectangle(&views[row.direction], wider(row.along), wider(row.across));
+    let racks: Vec<_> = rows.iter().map(rack).collect();
+    labels.extend(pillar_labels(evidence, &raster, &racks, &squares));
     labels
 }
 
@@ -156,6 +164,19 @@ fn squares(evidence: &Evidence, views: &[Turned], strips: &[Strip]) -> Squares {
     Squares::new(main, evidence)
 }
 
+fn pillar_labels(evidence: &Evidence, raster: &Raster, racks: &[Vec<[f64; 2]>], squares: &Squares) -> Vec<Label> {
+    let pillars = pillars::find(evidence, raster, racks);
+    let items: Vec<_> = pillars.iter().map(|pillar| (squares.place(pillar.at), pillar.width)).collect();
+    let names = squares.names("P", &items);
+    let label = |(pillar, name): (&pillars::Pillar, String)| Label::Pillar {
+        at: pillar.at.map(tidy),
+        width: tidy(pillar.width),
+        pattern: pillar.pattern,
+        name,
+    };
+    pillars.iter().zip(names).map(label).collect()
+}
+
 fn rack_labels(evidence: &Evidence, views: &[Turned], rows: &[Row], squares: &Squares) -> Vec<Label> {
     let mut faces = Faces::new(evidence, |_| true);
     let middle = |row: &Row| {
@@ -164,9 +185,12 @@ fn rack_labels(evidence: &Evidence, views: &[Turned], rows: &[Row], squares: &Sq
     };
     let items: Vec<_> = rows.iter().map(|row| (middle(row), row.along[1] - row.along[0])).collect();
     let names = squares.names("S", &items);
+    let periods = bays::find(evidence, views, rows);
     rows.iter()
+        .zip(periods)
         .zip(names)
-        .map(|(row, name)| {
+        .map(|((row, period), name)| {
+            let phase = |period: Period| (period.phase - row.along[0]).rem_euclid(period.pitch);
             let view = &views[row.direction];
             let polygon = rectangle(view, row.along, row.across);
             let middle = f64::midpoint(row.across[0], row.across[1]);
@@ -175,6 +199,8 @@ fn rack_labels(evidence: &Evidence, views: &[Turned], rows: &[Row], squares: &Sq
                 polygon,
                 axis: row.along.map(|u| view.to_map([u, middle]).map(tidy)),
                 width: tidy(row.across[1] - row.across[0]),
+                pitch: period.map(|period| tidy(period.pitch)),
+                phase: period.map(|period| tidy(phase(period))),
                 name,
             }
         })

@@ -19,7 +19,7 @@ use crate::subdivision::distance;
 use cells::Rules;
 pub use corridors::Corridor;
 use gaps::Bar;
-use raster::Raster;
+pub use raster::Raster;
 
 /// What stands apart from all else is a region when it holds so much, square metres, and has room for a circle of such a
 /// radius, metres: less is a ray through a window.
@@ -102,14 +102,14 @@ pub struct Racked {
 /// corridors is no door.
 pub fn find(
     evidence: &Evidence,
+    raster: &Raster,
     first: usize,
     racked: &Racked,
     corridors: &[Corridor],
     squares: &Squares,
 ) -> Vec<Label> {
-    let Some(raster) = Raster::new(evidence.grid) else { return Vec::new() };
     let clearance = raster.clearance();
-    let mut bars = bars(evidence, &raster, &clearance);
+    let mut bars = bars(evidence, raster, &clearance);
     bars.retain(|bar| {
         let ends = bar.ends.map(|end| evidence.grid.frame.to_metres(raster.to_grid(end)));
         let middle = [0, 1].map(|axis| f64::midpoint(ends[0][axis], ends[1][axis]));
@@ -118,29 +118,29 @@ pub fn find(
     });
     let parameters = evidence.parameters;
     let rules = Rules { openness: parameters.rooms_openness, least_area: parameters.rooms_min_area };
-    let mut cells = cells::find(&raster, &bars, &rules);
-    let mut regions = regions(evidence, &raster, &clearance, &mut cells.regions, racked, squares);
+    let mut cells = cells::find(raster, &bars, &rules);
+    let mut regions = regions(evidence, raster, &clearance, &mut cells.regions, racked, squares);
     sort_by_rows(&mut regions);
     let mut order = vec![0; regions.len() + 1];
     for (n, region) in regions.iter().enumerate() {
         order[region.number as usize] = n;
     }
-    let doorways = doorways(&raster, &cells.regions, cells.openings);
-    let faces = faces(evidence, &raster, &cells.regions, regions.len());
+    let doorways = doorways(raster, &cells.regions, cells.openings);
+    let faces = faces(evidence, raster, &cells.regions, regions.len());
     let places: Vec<_> = regions.iter().map(|region| (region.place, region.pixels.len() as f64)).collect();
     let mut labels: Vec<Label> = Vec::new();
     for (region, name) in regions.iter().zip(squares.names("R", &places)) {
         let doors = doorways.iter().filter(|door| door.between.contains(&region.number)).count();
         let to_map = |place| evidence.grid.frame.to_metres(place).map(tidy);
-        let rings = outlines::rings(&raster, &cells.regions, region.number, &region.pixels);
+        let rings = outlines::rings(raster, &cells.regions, region.number, &region.pixels);
         let mut rings = rings.into_iter().map(|ring| ring.into_iter().map(to_map).collect());
         labels.push(Label::Region {
-            purpose: purpose(&raster, &clearance, region, doors),
+            purpose: purpose(raster, &clearance, region, doors),
             faces: faces[region.number as usize].clone(),
             polygon: rings.next().unwrap_or_default(),
             holes: rings.collect(),
             at: to_map(raster.to_grid(raster.place(region.at))),
-            area: tidy(area(&raster, &region.pixels)),
+            area: tidy(area(raster, &region.pixels)),
             name,
         });
     }

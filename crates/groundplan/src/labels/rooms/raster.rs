@@ -17,6 +17,16 @@ pub struct Raster {
     pub free: Vec<bool>,
     /// Part of something that stands by itself in free space and is too thick for a wall: a rack, goods, a machine.
     pub solid: Vec<bool>,
+    /// What stands by itself in free space and is small.
+    pub islands: Vec<Island>,
+}
+
+/// Something small in free space, pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Island {
+    pub middle: [f64; 2],
+    pub length: f64,
+    pub thickness: f64,
 }
 
 /// What stands by itself in free space and is no longer than this, metres, is a chair's or a table's leg, no wall.
@@ -61,6 +71,7 @@ impl Raster {
             resolution: grid.frame.resolution,
             free: seen.clone(),
             solid: vec![false; seen.len()],
+            islands: Vec::new(),
             seen,
         };
         made.sort_islands();
@@ -165,7 +176,10 @@ impl Raster {
             if !alone {
                 continue;
             }
-            let [length, thickness] = self.extent(&island);
+            let (middle, [length, thickness]) = self.extent(&island);
+            if length <= self.pixels(BLOB) {
+                self.islands.push(Island { middle, length, thickness });
+            }
             let longest = length.min(self.pixels(BLOB));
             let marks = if length <= self.pixels(LEG) || (length <= longest && thickness >= SLIM * length) {
                 &mut self.free
@@ -195,15 +209,15 @@ impl Raster {
         }
     }
 
-    /// Length and thickness of the rectangle with an island's second moments, pixels.
-    fn extent(&self, island: &[usize]) -> [f64; 2] {
+    /// Middle of an island, and length and thickness of the rectangle with its second moments, pixels.
+    fn extent(&self, island: &[usize]) -> ([f64; 2], [f64; 2]) {
         let count = island.len() as f64;
         let places = || island.iter().map(|&pixel| self.place(pixel));
         let mean = [0, 1].map(|axis| places().map(|p| p[axis]).sum::<f64>() / count);
         let moment = |a: usize, b: usize| places().map(|p| (p[a] - mean[a]) * (p[b] - mean[b])).sum::<f64>() / count;
         let (xx, xy, yy) = (moment(0, 0), moment(0, 1), moment(1, 1));
         let (middle, half) = (f64::midpoint(xx, yy), ((0.5 * (xx - yy)).powi(2) + xy * xy).sqrt());
-        [middle + half, middle - half].map(|m| (12.0 * m.max(0.0) + 1.0).sqrt())
+        (mean, [middle + half, middle - half].map(|m| (12.0 * m.max(0.0) + 1.0).sqrt()))
     }
 
     /// Squared distance of each pixel to the nearest that is not free, in pixels (Meijster, Roerdink and Hesselink 2000).

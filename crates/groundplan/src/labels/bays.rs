@@ -1,0 +1,98 @@
+//! Bays: the pitch of the posts along each row of racks, and where they begin.
+//!
+//! Rows of one hall have one pitch, and each has its own beginning: the powers of their spectra add up whatever their
+//! phases, and what goods do to one row they do not do to all.
+
+use super::Evidence;
+use super::period::{self, Period};
+use super::pitch;
+use super::racks::Row;
+use super::turned::Turned;
+
+/// Posts stand this near to a row's faces, metres.
+const NEAR: f64 = 0.15;
+/// Places along are told apart in steps of this, metres; a post is about two and a half of them wide.
+const STEP: f64 = 0.05;
+const POST: f64 = 2.5;
+/// A row's own pitch lies within this share of the common one, to each side so many steps are tried.
+const OWN: f64 = 0.08;
+const STEPS: i32 = 60;
+/// Multiples of its frequency that count.
+const HARMONICS: u32 = 4;
+/// A row recurs when chance gives such a power less often than once in exp of this (Rayleigh).
+const CLEAR: f64 = 1.5;
+/// What recurs at half a pitch does so at the whole one too, with this share of the power.
+const AS_GOOD: f64 = 0.5;
+/// The common power stands out of the median by this factor.
+const CONTRAST: f64 = 1.8;
+
+/// For each row its period along its direction's places, where there is one.
+pub fn find(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Option<Period>> {
+    let mut found = vec![None; rows.len()];
+    for view in views {
+        let own: Vec<usize> = (0..rows.len()).filter(|&n| rows[n].direction == view.direction).collect();
+        if own.is_empty() {
+            continue;
+        }
+        // Across, then along.
+        let mut specks: Vec<[f64; 2]> = pitch::specks_of(evidence, view).map(|[u, v]| [v, u]).collect();
+        specks.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let places: Vec<Vec<f64>> = own.iter().map(|&n| along(&rows[n], &specks)).collect();
+        let Some(common) = common(&places) else { continue };
+        for (&n, places) in own.iter().zip(&places) {
+            found[n] = of_row(places, common, rows[n].along[1] - rows[n].along[0]);
+        }
+    }
+    found
+}
+
+/// Where specks stand on a row's faces, along.
+fn along(row: &Row, specks: &[[f64; 2]]) -> Vec<f64> {
+    let mut places = Vec::new();
+    for face in row.across {
+        let from = specks.partition_point(|s| s[0] < face - NEAR);
+        let to = specks.partition_point(|s| s[0] <= face + NEAR);
+        let within = specks[from..to].iter().map(|s| s[1]).filter(|u| (row.along[0]..=row.along[1]).contains(u));
+        let mut steps: Vec<i64> = within.map(|u| (u / STEP).round() as i64).collect();
+        steps.sort_unstable();
+        steps.dedup();
+        places.extend(steps.into_iter().map(|step| step as f64 * STEP));
+    }
+    places
+}
+
+/// The pitch at which the rows have most power together; the longest of those that are about as good.
+fn common(rows: &[Vec<f64>]) -> Option<f64> {
+    let frequencies = period::frequencies(rows.iter().map(Vec::as_slice), pitch::LAGS.into())?;
+    let power = |f: f64| {
+        let power = |places: &Vec<f64>| places.len() as f64 * period::measure(places, 1.0 / f).strength.powi(2);
+        rows.iter().map(power).sum::<f64>()
+    };
+    let powers: Vec<f64> = frequencies.iter().map(|f| power(*f)).collect();
+    let mut sorted = powers.clone();
+    sorted.sort_by(f64::total_cmp);
+    let usual = sorted[sorted.len() / 2];
+    let best = sorted[sorted.len() - 1];
+    if best < CONTRAST * usual {
+        return None;
+    }
+    let good = powers.iter().position(|power| power - usual >= AS_GOOD * (best - usual))?;
+    let top = (good..powers.len()).take_while(|&n| n == good || powers[n] > powers[n - 1]).last()?;
+    let step = frequencies.get(1).map_or(0.0, |second| second - frequencies[0]);
+    let near = (-20..=20).map(|n| frequencies[top] + f64::from(n) * step / 20.0);
+    near.map(|f| (power(f), 1.0 / f)).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, pitch)| pitch)
+}
+
+/// A row's own pitch near the common one. Posts are narrow: their harmonics tell it more finely than they do themselves.
+fn of_row(places: &[f64], common: f64, length: f64) -> Option<Period> {
+    let power = |pitch: f64| {
+        let harmonics = (1..=HARMONICS).map(|h| period::measure(places, pitch / f64::from(h)).strength.powi(2));
+        harmonics.sum::<f64>()
+    };
+    let pitches = (-STEPS..=STEPS).map(|n| common * (1.0 + OWN * f64::from(n) / f64::from(STEPS)));
+    let own = pitches.map(|pitch| (power(pitch), pitch)).max_by(|a, b| a.0.total_cmp(&b.0))?.1;
+    let period = period::measure(places, own);
+    let posts = places.len() as f64 / POST;
+    // Two bays at least.
+    (posts * period.strength.powi(2) >= CLEAR && length > 1.5 * own).then_some(period)
+}
