@@ -16,7 +16,18 @@ EXPECTED = {
     *("survey", "Survey", "parameters"),
     *("find_gradients", "find_directions", "find_radiograms", "find_response", "find_lines"),
     *("subdivide", "find_occupancy", "find_walls", "find_adjacency", "find_labels"),
-    *("Gradients", "Directions", "Radiogram", "Response", "Lines", "Subdivision", "Occupancy", "Walls", "Adjacency"),
+    *(
+        "Gradients",
+        "Directions",
+        "Radiogram",
+        "Response",
+        "Route",
+        "Lines",
+        "Subdivision",
+        "Occupancy",
+        "Walls",
+        "Adjacency",
+    ),
     *("GroundplanError", "MapError", "ParameterError", "FormatError"),
 }
 

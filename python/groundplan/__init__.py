@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from groundplan._errors import FormatError, GroundplanError, MapError, ParameterError
+    from groundplan._queries import Route
     from groundplan.maps import Map, MapWarning, from_array, read
     from groundplan.parameters import table as parameters
     from groundplan.stages import (
@@ -56,6 +57,7 @@ __all__ = [
     "ParameterError",
     "Radiogram",
     "Response",
+    "Route",
     "Subdivision",
     "Survey",
     "Walls",

@@ -1,9 +1,11 @@
-from typing import Any, TypeAlias
+from typing import Any, Self, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "Locator",
+    "Ways",
     "find_adjacency",
     "find_directions",
     "find_gradients",
@@ -30,6 +32,38 @@ _Layout: TypeAlias = tuple[
     tuple[float, float, float],
 ]
 _Record: TypeAlias = dict[str, Any]
+_Frame: TypeAlias = tuple[int, int, float, tuple[float, float, float]]
+_Points: TypeAlias = npt.NDArray[np.float64]
+
+@final
+class Locator:
+    def __new__(
+        cls,
+        place: _Frame,
+        directions: _Record,
+        lines: _Record,
+        ring_points: _Points,
+        offsets: list[int],
+        labels: list[int],
+    ) -> Self: ...
+    @property
+    def faces(self) -> int: ...
+    def locate(self, x: float, y: float) -> int | None: ...
+    def locate_all(self, array: _Points) -> npt.NDArray[np.int32]: ...
+    def labels_at(self, x: float, y: float) -> list[int]: ...
+    def along(self, way: _Points) -> npt.NDArray[np.uint32]: ...
+
+@final
+class Ways:
+    @staticmethod
+    def of_map(layout: _Layout, clearance: float) -> Ways: ...
+    @staticmethod
+    def of_survey(
+        place: _Frame, ring_points: _Points, offsets: list[int], taken: _Points, clearance: float
+    ) -> Ways: ...
+    def is_open(self, x: float, y: float) -> bool: ...
+    def nearest(self, x: float, y: float, reach: float) -> tuple[float, float] | None: ...
+    def route(self, start: tuple[float, float], end: tuple[float, float]) -> _Points | None: ...
 
 def version() -> str: ...
 def table() -> list[_Record]: ...

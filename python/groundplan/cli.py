@@ -4,6 +4,7 @@
               1     a bug
               2     wrong usage: an unknown flag or parameter, a value out of its range, an extra not installed
               3     a file that cannot be read, is not what it should be, or cannot be written
+              4     there is no way (groundplan route)
               130   interrupted
               141   nobody reads the output any more
 

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from groundplan import _core
-from groundplan._errors import FormatError, MapError
+from groundplan._errors import FormatError, MapError, ParameterError
 from groundplan._extras import needed
 from groundplan._files import unreadable, write_text
 from groundplan._format import FORMAT, VERSION, check_format
+from groundplan._queries import Place, Queries, Route
 from groundplan._shapes import outline
 from groundplan.maps import Map, MapWarning, from_array
 from groundplan.maps.map_server import shown
@@ -28,6 +30,7 @@ from groundplan.stages import (
     Lines,
     Occupancy,
     Radiogram,
+    SignedIds,
     Stage,
     Subdivision,
     Walls,
@@ -43,6 +46,9 @@ from groundplan.stages import (
 
 if TYPE_CHECKING:
     import networkx
+
+#: What is taken for many coordinates and not for one.
+_MANY = (np.ndarray, list, tuple)
 
 STATES = ("free", "occupied", "unknown")
 
@@ -128,6 +134,87 @@ class Survey(Stage):
     def of_kind(self, kind: str) -> list[Label]:
         """The labels of one kind, such as ``corridor``."""
         return [label for label in self.labels if label["kind"] == kind]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is copied and pickled: the fields, and neither index nor map."""
+        return {f.name: getattr(self, f.name) for f in fields(self)}
+
+    @property
+    def _queries(self) -> Queries:
+        known: Queries | None = self.__dict__.get("_index")
+        if known is None:
+            known = self.__dict__["_index"] = Queries(self)
+        return known
+
+    @overload
+    def locate(self, x: float, y: float) -> int | None: ...
+    @overload
+    def locate(self, x: npt.NDArray[Any] | Sequence[float], y: npt.NDArray[Any] | Sequence[float]) -> SignedIds: ...
+    def locate(self, x: Any, y: Any) -> int | SignedIds | None:
+        """The face that holds a point (metres, map frame), None outside the map; of arrays, an array with `NONE`.
+
+        Every point of the map is in one face: one on a line is in the face on the side of the line's normal
+        (-sin angle, cos angle), one on the map's border in the map. Points are rounded to 2^-26 of a pixel. The first
+        call makes an index, the others take about a microsecond.
+
+        Raises
+        ------
+        ParameterError
+            ``point.finite`` for what is not.
+        """
+        if isinstance(x, _MANY) or isinstance(y, _MANY):
+            return self._queries.locate_all(x, y)
+        face = self._queries.locator.locate(x, y)
+        if face is None and not (math.isfinite(x) and math.isfinite(y)):
+            raise ParameterError("point.finite", f"the point ({x}, {y}) is not finite")
+        return face
+
+    def labels_at(self, x: float, y: float) -> list[Label]:
+        """The labels whose polygons hold a point (metres, map frame): region, corridor, junction, rack; by their ids.
+
+        Raises
+        ------
+        ParameterError
+            ``point.finite`` for what is not.
+        """
+        if not (math.isfinite(x) and math.isfinite(y)):
+            raise ParameterError("point.finite", f"the point ({x}, {y}) is not finite")
+        return [self.labels[n] for n in self._queries.locator.labels_at(x, y)]
+
+    def route(self, a: Place, b: Place, *, clearance: float = 0.3, map: Map | None = None) -> Route | None:
+        """The shortest way from one place to another, None where there is none.
+
+        Parameters
+        ----------
+        a, b
+            A point (x, y) in metres in the map frame, the name of a label ("A03") or the id of a face. From a label or
+            a face the way begins near its middle, where the clearance allows.
+        clearance
+            What to keep from what is occupied, metres: the robot's radius and what it needs beside.
+        map
+            The surveyed map; a survey that was just made still has it.
+
+        Returns
+        -------
+        Route or None
+            Where the map is at hand, every point of the way lies in free pixels and is at least `clearance` from every
+            occupied one. A survey that was read from a file knows less: the outlines of its regions and what lies on
+            the edges of its faces. From these the clearance is kept; what is small and stands by itself (a chair, a
+            bin, goods in an aisle) it does not know. The way is the shortest over steps to eight neighbouring pixels,
+            pulled taut: a few percent longer than the shortest at most, as a rule. The faces are those that it passes
+            through; it crosses their edges where nothing lies on them, so that a door in a long wall is a way though
+            the link there is not connected.
+
+            The first call for a clearance goes over the map once, the others search what that left.
+
+        Raises
+        ------
+        ParameterError
+            ``route.name``, ``route.face``, ``route.place``, ``route.outside``, ``point.finite`` for what is no place;
+            ``route.blocked`` where a robot with that clearance cannot be; ``route.clearance``; ``route.map`` for a map
+            of another size.
+        """
+        return self._queries.route(a, b, clearance, self.__dict__.get("_map") if map is None else map)
 
     def to_dict(self) -> dict[str, Any]:
         """The survey as the format has it: plain lists and numbers."""
@@ -408,7 +495,7 @@ def survey(
         "walls": Walls,
         "adjacency": Adjacency,
     }
-    return Survey(
+    survey = Survey(
         map=MapInfo(map.image, map.width, map.height, map.resolution, map.origin),
         parameters=resolve(parameters),
         radiograms=[made(Radiogram, arrays) for arrays in found["radiograms"]],
@@ -417,6 +504,8 @@ def survey(
         warnings=[*map.warnings, *(MapWarning(code, message) for code, message in found["warnings"])],
         **{name: made(kind, found[name]) for name, kind in stages.items()},
     )
+    survey.__dict__["_map"] = map  # for its routes, and no part of what it is
+    return survey
 
 
 def is_array(value: object) -> bool:

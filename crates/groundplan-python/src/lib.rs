@@ -1,6 +1,8 @@
 //! The Python module `groundplan._core`: arrays and parameters in, arrays out; no logic.
 
 mod convert;
+#[allow(clippy::needless_pass_by_value)]
+mod queries;
 
 // What PyO3 hands over it hands over by value.
 #[allow(clippy::needless_pass_by_value)]
@@ -8,6 +10,8 @@ mod convert;
 #[pyo3::pymodule]
 mod _core {
     use crate::convert::{self, Layout, Named};
+    #[pymodule_export]
+    use crate::queries::{Locator, Ways};
     use groundplan::directions::Directions;
     use groundplan::{
         Given, TABLE, adjacency, arrangement, directions, gradients, labels, lines, occupancy, radiograms,

@@ -16,6 +16,7 @@ COMMANDS = {
     "survey": "find the directions, walls, corridors and junctions of a map",
     "watch": "keep a survey of a live topic up to date",
     "figures": "draw the paper's figures from a saved survey",
+    "route": "find the way from one place of a saved survey to another",
     "export": "write a saved survey for CAD, fleets, warehouse systems and other programs",
     "simulate": "make a map of a place that never was, with its truth",
     "evaluate": "score a survey against a truth, or the method on a suite of simulated maps",

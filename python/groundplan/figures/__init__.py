@@ -17,11 +17,13 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from groundplan._queries import Route
 from groundplan.figures._details import coarse_and_fine
 from groundplan.figures._directions import directions, radiograms
 from groundplan.figures._dual import abstraction, connectivity, edge_features, subdivision_and_dual
 from groundplan.figures._labelled import labelled
 from groundplan.figures._roads import roads as road_sheet
+from groundplan.figures._route import route as route_sheet
 from groundplan.figures._style import DPI, save, style
 from groundplan.figures._underlay import Underlay, underlay
 from groundplan.maps import Map
@@ -30,7 +32,7 @@ from groundplan.roadmap import RoadMap
 from groundplan.survey import Survey
 from groundplan.survey import survey as make_survey
 
-__all__ = ["draw_figures", "draw_road_map", "draw_survey"]
+__all__ = ["draw_figures", "draw_road_map", "draw_route", "draw_survey"]
 
 
 def draw_survey(survey: Survey, map: Map, path: str | os.PathLike[str]) -> Path:
@@ -57,6 +59,19 @@ def draw_road_map(survey: Survey, map: Map, roads: RoadMap, path: str | os.PathL
     """
     with style():
         figure, dpi = road_sheet(survey, roads, underlay(map))
+        return save(figure, Path(path), dpi)
+
+
+def draw_route(survey: Survey, map: Map, way: Route, path: str | os.PathLike[str]) -> Path:
+    """Draw a way over the map to `path`: PNG, SVG or PDF, by its suffix.
+
+    Raises
+    ------
+    FormatError
+        ``file.write`` when the place cannot be written.
+    """
+    with style():
+        figure, dpi = route_sheet(survey, way, underlay(map))
         return save(figure, Path(path), dpi)
 
 

@@ -1,0 +1,185 @@
+"""What is asked of a survey again and again: where a point is, and the way from one place to another."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from groundplan import _core
+from groundplan._errors import FormatError, ParameterError
+from groundplan.maps import Map
+from groundplan.stages import Floats, Ids, SignedIds, Stage, layout, needs, record
+
+if TYPE_CHECKING:
+    from groundplan.survey import Label, Survey
+
+#: A point (x, y) in metres, a label's name, or the id of a face.
+Place: TypeAlias = "Sequence[float] | Floats | str | int"
+
+#: Clearances whose free space is kept ready.
+KEPT = 4
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Route(Stage):
+    """A way through a map.
+
+    Attributes
+    ----------
+    faces : (K,) uint32
+        That it passes through, in order; a face is named again where the way comes back to it.
+    points : (N, 2) float64
+        Its bends, metres in the map frame, both ends included.
+    length : float
+        Metres.
+    clearance : float
+        What it keeps from what is occupied, metres.
+    """
+
+    faces: Ids
+    points: Floats
+    length: float
+    clearance: float
+
+
+class Queries:
+    """A survey's index of places; its space of each clearance is made when it is first asked for."""
+
+    def __init__(self, survey: Survey) -> None:
+        info = survey.map
+        self.survey = survey
+        self.frame = (info.width, info.height, info.resolution, info.origin)
+        polygons = [(n, label) for n, label in enumerate(survey.labels) if "polygon" in label]
+        rings = [(n, ring) for n, label in polygons for ring in (label["polygon"], *label.get("holes", ()))]
+        self.locator = _core.Locator(
+            self.frame,
+            record(survey.directions),
+            record(survey.lines),
+            *_ragged([r for _, r in rings]),
+            [n for n, _ in rings],
+        )
+        if self.locator.faces != len(survey.subdivision.areas):
+            said = f"its lines make {self.locator.faces} faces and it has {len(survey.subdivision.areas)}"
+            raise FormatError("survey.content", f"the survey is not whole: {said}")
+        self._ways: dict[tuple[float, int], tuple[Map | None, _core.Ways]] = {}
+
+    def locate_all(self, x: npt.ArrayLike, y: npt.ArrayLike) -> SignedIds:
+        """The faces that hold points, `NONE` outside."""
+        xs, ys = np.broadcast_arrays(np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64))
+        if not (np.isfinite(xs).all() and np.isfinite(ys).all()):
+            raise ParameterError("point.finite", "a coordinate of the points is not finite")
+        points = np.column_stack([xs.ravel(), ys.ravel()])
+        return self.locator.locate_all(points).reshape(xs.shape)
+
+    def route(self, a: Place, b: Place, clearance: float, map: Map | None) -> Route | None:
+        """As `Survey.route`."""
+        if not _is_number(clearance) or not 0 <= clearance < math.inf:
+            raise ParameterError("route.clearance", f"the clearance cannot be {clearance!r}", "metres from 0 on")
+        ways = self.ways(float(clearance), map)
+        start, end = (self.place(place, ways, clearance) for place in (a, b))
+        found = ways.route(start, end)
+        if found is None:
+            return None
+        length = float(np.hypot(*np.diff(found, axis=0).T).sum())
+        return Route(self.locator.along(found), found, length, float(clearance))
+
+    def ways(self, clearance: float, map: Map | None) -> _core.Ways:
+        """The free space that keeps a clearance."""
+        key = (clearance, id(map))
+        if key not in self._ways:
+            if len(self._ways) == KEPT:
+                del self._ways[next(iter(self._ways))]
+            # The map is held with it, so that no other has its id.
+            made = self._of_survey(clearance) if map is None else self._of_map(clearance, map)
+            self._ways[key] = map, made
+        return self._ways[key][1]
+
+    def _of_map(self, clearance: float, map: Map) -> _core.Ways:
+        info, needed = self.survey.map, needs(Map, "map", map)
+        if (needed.width, needed.height) != (info.width, info.height):
+            said = f"the map has {map.width} x {map.height} pixels, and the surveyed one {info.width} x {info.height}"
+            raise ParameterError("route.map", said)
+        return _core.Ways.of_map(layout(needed), clearance)
+
+    def _of_survey(self, clearance: float) -> _core.Ways:
+        survey, cut = self.survey, self.survey.subdivision
+        regions = survey.of_kind("region")
+        rings = [ring for region in regions for ring in (region["polygon"], *region.get("holes", ()))]
+        if not rings:
+            rings = [cut.polygon(int(face)) for face in np.flatnonzero(survey.occupancy.states == 0)]
+        # The covered parts of the edges.
+        runs, counts = survey.occupancy.runs, np.diff(survey.occupancy.run_offsets)
+        ends = cut.vertices[cut.edge_vertices][np.repeat(np.arange(len(counts)), counts)]
+        along = ends[:, 1] - ends[:, 0]
+        along /= np.maximum(np.hypot(*along.T), 1e-9)[:, None]
+        taken = [(ends[:, :1] + along[:, None] * runs[:, :, None]).reshape(-1, 2)]
+        for pillar in survey.of_kind("pillar"):
+            half = pillar.get("width", 0) / 2
+            taken.append(np.array(pillar["at"]) + half * np.array([[-1, -1], [1, 1], [-1, 1], [1, -1]]))
+        return _core.Ways.of_survey(self.frame, *_ragged(rings), np.concatenate(taken), clearance)
+
+    def place(self, place: Place, ways: _core.Ways, clearance: float) -> tuple[float, float]:
+        """A point that a robot may stand on."""
+        if isinstance(place, str):
+            label = self._named(place)
+            ring = np.asarray(label["polygon"], dtype=np.float64)
+            axis = np.asarray(label["axis"]).mean(axis=0) if "axis" in label else ring.mean(axis=0)
+            middle = label.get("at", axis)
+        elif isinstance(place, int | np.integer) and not isinstance(place, bool):
+            cut = self.survey.subdivision
+            if not 0 <= place < len(cut.areas):
+                raise ParameterError(
+                    "route.face", f"there is no face {place}", f"there are {len(cut.areas)}, from 0 on"
+                )
+            ring, middle = cut.polygon(int(place)), cut.centres[place]
+        else:
+            return self._point(place, ways, clearance)
+        reach = float(np.hypot(*np.ptp(ring, axis=0))) / 2
+        open = ways.nearest(float(middle[0]), float(middle[1]), reach)
+        if open is None:
+            said = f"no point of {place!r} is {clearance:g} m from what is occupied"
+            raise ParameterError("route.blocked", said, "a smaller clearance may leave room")
+        return open[0], open[1]
+
+    def _named(self, name: str) -> Label:
+        names = {label["name"]: label for label in self.survey.labels if "name" in label and "polygon" in label}
+        if name not in names:
+            near = get_close_matches(name, names, 1) or sorted(names)[:1]
+            raise ParameterError("route.name", f"no label is named {name!r}", f"there is {near[0]}" if near else None)
+        return names[name]
+
+    def _point(self, place: Any, ways: _core.Ways, clearance: float) -> tuple[float, float]:
+        try:
+            x, y = (float(value) for value in place)
+        except (TypeError, ValueError):
+            said = f"{place!r} is no place"
+            raise ParameterError(
+                "route.place", said, "a point (x, y) in metres, a label's name or a face's id"
+            ) from None
+        if not (math.isfinite(x) and math.isfinite(y)):
+            raise ParameterError("point.finite", f"the point ({x}, {y}) is not finite")
+        if self.locator.locate(x, y) is None:
+            raise ParameterError("route.outside", f"({x:g}, {y:g}) lies outside the map")
+        if not ways.is_open(x, y):
+            nearest = ways.nearest(x, y, 2.0)
+            hint = f"the nearest point that is, is ({nearest[0]:.2f}, {nearest[1]:.2f})" if nearest else None
+            said = f"({x:g}, {y:g}) is not free and {clearance:g} m from what is occupied"
+            raise ParameterError("route.blocked", said, hint)
+        return x, y
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+
+
+def _ragged(rings: Sequence[Any]) -> tuple[Floats, list[int]]:
+    """Rings as points and offsets."""
+    parts = [np.asarray(ring, dtype=np.float64).reshape(-1, 2) for ring in rings]
+    points = np.concatenate(parts) if parts else np.empty((0, 2))
+    return points, np.cumsum([0, *(len(part) for part in parts)]).tolist()
