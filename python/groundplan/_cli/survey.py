@@ -57,6 +57,7 @@ def fill(own: argparse.ArgumentParser) -> None:
 
 def add_method(own: argparse.ArgumentParser) -> None:
     """Flags for how a map is surveyed."""
+    own.add_argument("--name", metavar="NAME", help="what the survey calls the map (default: as its file or topic)")
     own.add_argument("--threads", type=count, metavar="N", help="at most so many; any number gives the same survey")
     group = own.add_argument_group("the method")
     either = group.add_mutually_exclusive_group()
@@ -152,7 +153,7 @@ def run(arguments: argparse.Namespace) -> None:
         found = terminal.working(
             status, f"surveying {name}", lambda: groundplan.survey(map, threads=arguments.threads, **chosen)
         )
-        named = dataclasses.replace(found.map, image=printable(found.map.image))
+        named = dataclasses.replace(found.map, image=printable(arguments.name or found.map.image))
         out = directory(arguments)
         found = dataclasses.replace(found, map=named, source=seen_from(out or Path(), arguments.map), reading=given)
         written = [] if out is None else write(out, found, map, status, arguments.figures, arguments.export)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from groundplan._cli import terminal
 from groundplan._cli.arguments import number, place, share
-from groundplan._cli.survey import add_method, refuse_nothing, settings
+from groundplan._cli.survey import add_method, printable, refuse_nothing, settings
 
 if TYPE_CHECKING:
     from groundplan.maps import Map
@@ -113,6 +113,8 @@ def keep(
     status: terminal.Status,
 ) -> None:
     """Survey a map, write the survey, publish it and say so."""
+    import dataclasses
+
     import groundplan
     from groundplan._files import write_text
 
@@ -120,6 +122,8 @@ def keep(
     found = terminal.working(
         status, f"surveying {topic.name}", lambda: groundplan.survey(map, threads=arguments.threads, **chosen)
     )
+    named = dataclasses.replace(found.map, image=printable(arguments.name or found.map.image))
+    found = dataclasses.replace(found, map=named)
     text = found.to_json()
     write_text(out / "survey.json", text)
     if arguments.publish is not None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,10 +28,13 @@ from groundplan.maps.image import grey_of, opened, refuse_growth
 from groundplan.maps.map_server import check_resolution
 from groundplan.maps.pgm import sixteen_bits
 
-#: Tags of a frame, of no-data, and of a directory of blocks that only GDAL reads: GeoTIFF 1.1, GDAL.
+#: Tags of a frame, and GDAL's of no-data.
 GEO_TAGS = (33550, 33922, 34264, 34735, 42113)
 BITS, SAMPLE_FORMAT, SIGNED = 258, 339, 2
 WORLD_FILES = (".tfw", ".tifw", ".wld")
+
+#: How many bands of colour there may be of each type.
+BANDS = {"uint8": (1, 3), "int8": (1,), "uint16": (1,)}
 
 #: Sides of a pixel may differ by so much of their length, and its corner from a right angle in radians.
 SQUARE = 1e-6
@@ -173,38 +177,32 @@ def _content(
     """The pixels, and what was lost."""
     from rasterio.enums import ColorInterp, MaskFlags
 
-    kinds = set(data.dtypes)
-    alpha = ColorInterp.alpha in data.colorinterp
-    colours = data.count - alpha
-    kind = np.dtype(data.dtypes[0])
-    if (
-        len(kinds) > 1
-        or kind not in (np.uint8, np.int8, np.uint16)
-        or colours not in ((1, 3) if kind == np.uint8 else (1,))
-    ):
+    kinds, colours = set(data.dtypes), data.count - (ColorInterp.alpha in data.colorinterp)
+    if len(kinds) > 1 or colours not in BANDS.get(data.dtypes[0], ()):
         said = f"{path} has {data.count} bands of {' and '.join(sorted(kinds))}"
         hint = "gdal_translate -ot Byte -scale makes greys of them"
         raise MapError("map.pixels", f"{said}; a map needs greys of 8 or 16 bits, or int8 occupancies", hint)
+    signed = data.dtypes[0] == "int8"
     masked = MaskFlags.per_dataset in data.mask_flag_enums[0]
-    if masked and kind != np.int8 and data.height * data.width > _canvas.IN_MEMORY:
+    if masked and not signed and data.height * data.width > _canvas.IN_MEMORY:
         said = f"{path} has {data.width} x {data.height} pixels and a mask beside them"
         raise MapError("map.too-large", said, "gdal_translate -b 1 -mask none -a_nodata 205 leaves the mask out")
-    nodata = None if data.nodata is None or data.nodata != int(data.nodata) else int(data.nodata)
-    hidden = None
     with Canvas(path, data.height, data.width, progress) as canvas:
         for window in _windows(data):
-            top, bands = window.row_off, data.read(list(range(1, colours + 1)), window=window)
-            if masked and kind == np.int8:
+            bands = data.read(list(range(1, colours + 1)), window=window)
+            if masked and signed:
                 bands[0][data.read_masks(1, window=window) == 0] = -1
-            canvas.put(top, _as_bytes(bands, luma=luma))
+            canvas.put(window.row_off, _as_bytes(bands, luma=luma))
         pixels = canvas.pixels()
-    if kind == np.int8:
+    whole = data.nodata is not None and math.isfinite(data.nodata) and data.nodata == int(data.nodata)
+    nodata = int(data.nodata) if whole else None
+    if signed:
         return Occupancies(pixels, absent=None if nodata is None else nodata & 255), []
-    if masked:
-        hidden = data.read_masks(1)
-        hidden = None if hidden.min() == 255 else hidden
+    alpha = data.read_masks(1) if masked else None
+    if alpha is not None and alpha.min() == 255:
+        alpha = None
+    most = 65535 if data.dtypes[0] == "uint16" else 255
     absent = np.zeros(256, np.bool_)
-    most = 255 if kind == np.uint8 else 65535
     if nodata is not None and 0 <= nodata <= most:
         absent[(nodata * 255 + most // 2) // most] = True
     shades, alphas = np.arange(256, dtype=np.float64), None
@@ -212,7 +210,7 @@ def _content(
         table = np.array([data.colormap(1).get(k, (0, 0, 0, 255)) for k in range(256)], np.uint8)
         shades = grey_of(table[:, 0], table[:, 1], table[:, 2], luma=luma).astype(np.float64)
         alphas = None if table[:, 3].min() == 255 else table[:, 3]
-    found = Picture(pixels, shades, alphas, hidden, masked or alphas is not None, absent)
+    found = Picture(pixels, shades, alphas, alpha, masked or alphas is not None, absent)
     return found, [] if most == 255 else [sixteen_bits(path)]
 
 
@@ -238,8 +236,6 @@ def _as_bytes(bands: npt.NDArray[Any], *, luma: bool) -> Bytes:
 
 def _flipped(content: Picture | Occupancies) -> Picture | Occupancies:
     """The other way up, without copying."""
-    from dataclasses import replace
-
     if isinstance(content, Occupancies):
         return replace(content, pixels=content.pixels[::-1])
     return replace(content, pixels=content.pixels[::-1], alpha=None if content.alpha is None else content.alpha[::-1])

@@ -65,6 +65,7 @@ class Topic:
             self._builtin = self._dds.builtin.BuiltinDataReader(
                 self._participant, self._dds.builtin.BuiltinTopicDcpsPublication
             )
+            self._waits, self._conditions = self._dds.core.WaitSet(self._participant), list[Any]()
             idl = self._dds.ros
             self._grids = [self._reader(self.name, idl.OccupancyGrid, 1, kept=True)]
             self._updates = [self._reader(self.name + UPDATES, idl.OccupancyGridUpdate, UPDATES_KEPT, kept=False)]
@@ -83,8 +84,8 @@ class Topic:
         for writer in self._writers.values():
             writer.wait_for_acks(self._dds.util.duration(seconds=LINGER_S))
         self._writers.clear()
-        self._grids, self._updates = [], []
-        del self._builtin, self._participant
+        self._grids, self._updates, self._conditions = [], [], []
+        del self._waits, self._builtin, self._participant
 
     def next(self, timeout: float | None = None) -> Map | None:
         """The map after what came since the last call; waits until something comes. None when it did not in time.
@@ -98,7 +99,8 @@ class Topic:
         while timeout is None or time.monotonic() - since < timeout:
             if self._take():
                 return self._map()
-            self._wait(SLICE_S if timeout is None else min(SLICE_S, max(0.001, since + timeout - time.monotonic())))
+            left = SLICE_S if timeout is None else since + timeout - time.monotonic()
+            self._waits.wait(self._dds.util.duration(seconds=min(SLICE_S, max(left, 0.001))))
         return None
 
     def heard(self) -> list[str]:
@@ -128,7 +130,12 @@ class Topic:
 
     def _reader(self, name: str, kind: Any, depth: int, *, kept: bool) -> Any:
         topic = self._dds.topic.Topic(self._participant, "rt" + name, kind)
-        return self._dds.sub.DataReader(self._participant, topic, self._qos(depth, kept=kept))
+        reader = self._dds.sub.DataReader(self._participant, topic, self._qos(depth, kept=kept))
+        state = self._dds.core
+        new = state.ViewState.Any | state.SampleState.NotRead | state.InstanceState.Any
+        self._conditions.append(state.ReadCondition(reader, new))
+        self._waits.attach(self._conditions[-1])
+        return reader
 
     def _look(self) -> None:
         """Learn who publishes what. A map that its publisher does not keep needs a reader that does not ask for it."""
@@ -168,14 +175,6 @@ class Topic:
         return Map(
             pixels.copy(), values, states, described.resolution, described.origin, described.image.as_posix(), warnings
         )
-
-    def _wait(self, seconds: float) -> None:
-        waits = self._dds.core.WaitSet(self._participant)
-        state = self._dds.core
-        for reader in (*self._grids, *self._updates):
-            mask = state.ViewState.Any | state.SampleState.NotRead | state.InstanceState.Alive
-            waits.attach(state.ReadCondition(reader, mask))
-        waits.wait(self._dds.util.duration(seconds=seconds))
 
 
 def domain_of(given: int | None) -> int:
