@@ -197,9 +197,9 @@ def test_the_survey_is_published_for_whoever_comes_late(tmp_path: Path, robot: R
 
 @over_dds
 def test_where_no_map_comes_it_is_told_what_is_heard(tmp_path: Path, robot: Robot, network: dict[str, str]) -> None:
-    ran = watch(network, "--topic", "/other/map", "--timeout", "3", "-o", tmp_path / "out")
+    ran = watch(network, "--topic", "/other/map", "--timeout", "5", "-o", tmp_path / "out")
     assert ran.code == 3 and not (tmp_path / "out").exists()
-    assert f"no map came on /other/map of domain {network['ROS_DOMAIN_ID']} within 3 s" in ran.err
+    assert f"no map came on /other/map of domain {network['ROS_DOMAIN_ID']} within 5 s" in ran.err
     assert "/map (nav_msgs/msg/OccupancyGrid)" in ran.err and "/chatter (std_msgs/msg/String)" in ran.err
 
 

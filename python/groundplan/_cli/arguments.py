@@ -196,7 +196,7 @@ def count(text: str) -> int:
 
 def add_reading(own: argparse.ArgumentParser, *, frame: bool) -> None:
     """Flags for how a map's file is read; `frame`: its resolution and origin too."""
-    group = own.add_argument_group("reading the map", "What is given here beats what the YAML says.")
+    group = own.add_argument_group("reading the map", "What is given here beats what the file says.")
     if frame:
         group.add_argument(
             "--resolution",

@@ -148,7 +148,9 @@ def run(arguments: argparse.Namespace) -> None:
         arguments.parser.error(f"--origin has {len(origin)} numbers; it takes 2 or 3: X Y [YAW]")
     name = Path(arguments.map).name
     with terminal.status(arguments.quiet) as status:
-        map = groundplan.read(arguments.map, progress=lambda share: status(f"reading {name}, {share:.0%}"), **given)
+        map = groundplan.read(
+            arguments.map, progress=lambda share: status(f"reading {name}, {100 * share:.0f} %"), **given
+        )
         refuse_nothing(map, name)
         found = terminal.working(
             status, f"surveying {name}", lambda: groundplan.survey(map, threads=arguments.threads, **chosen)
