@@ -64,17 +64,21 @@ def write(survey: Survey, path: Path, graph: str = "places") -> list[Path]:
         ElementTree.register_namespace(prefix, uri)
     root = ElementTree.Element(f"{{{CORE}}}IndoorFeatures", {f"{{{GML}}}id": "survey"})
     _gml(root, "name").text = one_line(survey.map.image) or "map"
+    around: list[list[Passage]] = [[] for _ in cells]
+    for passage in passages:
+        for n in passage.cells:
+            around[n].append(passage)
     primal = _core(_core(root, "primalSpaceFeatures"), "PrimalSpaceFeatures", "primal")
-    for n, cell in enumerate(cells):
-        _cell(primal, cell, [passage for passage in passages if n in passage.cells])
+    for cell, own in zip(cells, around, strict=True):
+        _cell(primal, cell, own)
     for passage in passages:
         _boundary(primal, passage)
     dual = _core(_core(root, "multiLayeredGraph"), "MultiLayeredGraph", "graph")
     layer = _core(_core(_core(dual, "spaceLayers", "layers"), "spaceLayerMember"), "SpaceLayer", "layer")
     ways = [passage for passage in passages if passage.open]
     nodes = _core(layer, "nodes", "nodes")
-    for n, cell in enumerate(cells):
-        _state(nodes, cell, [way for way in ways if n in way.cells])
+    for cell, own in zip(cells, around, strict=True):
+        _state(nodes, cell, [way for way in own if way.open])
     if ways:
         edges = _core(layer, "edges", "edges")
         for way in ways:
