@@ -8,8 +8,8 @@ mod sight;
 mod space;
 
 use crate::grid::{Frame, Grid, State, tidy};
-use sight::{length, pull};
-use space::{Bits, Layer, Pixel, Space};
+use sight::pull;
+use space::{Bits, Pixel, Space};
 
 /// The ways through a map that keep a clearance.
 #[derive(Clone, Debug)]
@@ -26,10 +26,6 @@ pub struct Evidence {
     /// Something occupied lies along these.
     pub taken: Vec<[[f64; 2]; 2]>,
 }
-
-/// The way with fewer bends is taken when it is no longer than this times the other's length, and so many pixels.
-const ALIKE: f64 = 1.01;
-const ALIKE_PIXELS: f64 = 4.0;
 
 /// One blank pixel on all sides.
 const BORDER: usize = 1;
@@ -124,36 +120,22 @@ impl Ways {
     #[must_use]
     pub fn route(&self, from: [f64; 2], to: [f64; 2]) -> Option<Vec<[f64; 2]>> {
         let ends = [self.pixel(from)?, self.pixel(to)?];
-        let tight = self.over(&self.space.tight, from, to, ends, ends)?;
-        // Where there is room the pixels in which one may be anywhere do, and the way can be pulled straight.
-        let beside = [self.space.safe_beside(ends[0]), self.space.safe_beside(ends[1])];
-        let safe = match beside {
-            [Some(start), Some(end)] => self.over(&self.space.safe, from, to, ends, [start, end]),
+        let space = &self.space;
+        let roomy = match ends.map(|end| space.roomy_beside(end)) {
+            [Some(start), Some(end)] => jump::find(&space.roomy, start, end),
             _ => None,
         };
-        let way = safe.filter(|way| length(way) <= ALIKE * length(&tight) + ALIKE_PIXELS).unwrap_or(tight);
-        let mut points: Vec<[f64; 2]> = way.into_iter().map(|p| self.point(p)).collect();
+        let steps = roomy.or_else(|| jump::find(&space.tight, ends[0], ends[1]))?;
+        let centre = |&[x, y]: &Pixel| [x as f64 + 0.5, y as f64 + 0.5];
+        let mut way = vec![self.place(from), centre(&ends[0])];
+        way.extend(steps.iter().map(centre));
+        way.extend([centre(&ends[1]), self.place(to)]);
+        way.dedup();
+        let mut points: Vec<[f64; 2]> = pull(&space.safe, &way).into_iter().map(|p| self.point(p)).collect();
         // As they were given, not as they come back from pixels.
         let last = points.len() - 1;
         (points[0], points[last]) = (from, to);
         Some(points)
-    }
-
-    /// The way over a layer, pulled taut, in places; from the ends to the pixels `over` each is a step.
-    fn over(
-        &self,
-        layer: &Layer,
-        from: [f64; 2],
-        to: [f64; 2],
-        ends: [Pixel; 2],
-        over: [Pixel; 2],
-    ) -> Option<Vec<[f64; 2]>> {
-        let centre = |[x, y]: Pixel| [x as f64 + 0.5, y as f64 + 0.5];
-        let mut way = vec![self.place(from), centre(ends[0])];
-        way.extend(jump::find(layer, over[0], over[1])?.into_iter().map(centre));
-        way.extend([centre(ends[1]), self.place(to)]);
-        way.dedup();
-        Some(pull(&self.space.safe.rows, &way))
     }
 
     /// Places are in pixels, counted from the corner of the blank border.

@@ -97,6 +97,22 @@ impl Bits {
     }
 }
 
+impl Bits {
+    /// The set pixels and their eight neighbours.
+    fn grown(&self) -> Self {
+        let mut made = Self::new(self.width, self.height);
+        let mut row = vec![0u64; self.stride];
+        for y in 0..self.height {
+            row.copy_from_slice(self.row(y));
+            grow(&mut row);
+            for to in y.saturating_sub(1)..(y + 2).min(self.height) {
+                made.row_mut(to).iter_mut().zip(&row).for_each(|(a, b)| *a |= b);
+            }
+        }
+        made
+    }
+}
+
 /// Sets the neighbours of the set bits of a row.
 fn grow(row: &mut [u64]) {
     let mut before = 0u64;
@@ -139,8 +155,10 @@ pub struct Layer {
 pub struct Space {
     /// Pixels from whose centres to the next one's one may go.
     pub tight: Layer,
+    /// Pixels in which one may be anywhere, and those of `tight` where a passage leaves no such.
+    pub roomy: Layer,
     /// Pixels in which one may be anywhere.
-    pub safe: Layer,
+    pub safe: Bits,
     occupied: Bits,
     radius: f64,
 }
@@ -159,11 +177,19 @@ impl Space {
                 let taken = occupied.dilated(radius);
                 free.words.iter_mut().zip(&taken.words).for_each(|(free, taken)| *free &= !taken);
             }
-            Layer::new(free)
+            free
         };
         // Anywhere in a pixel is at most half a diagonal from its centre.
         let safe = less(free.clone(), if clearance > 0.0 { clearance + FRAC_1_SQRT_2 + 1e-4 } else { 0.0 });
-        Self { tight: less(free, radius), safe, occupied, radius }
+        let tight = less(free, radius);
+        // Along a wall there is room within a pixel of what is tight; where there is none, it is a passage.
+        let mut narrow = tight.clone();
+        narrow.words.iter_mut().zip(&safe.grown().words).for_each(|(narrow, near)| *narrow &= !near);
+        let mut roomy = narrow.grown().grown();
+        for ((roomy, tight), safe) in roomy.words.iter_mut().zip(&tight.words).zip(&safe.words) {
+            *roomy = *roomy & tight | safe;
+        }
+        Self { tight: Layer::new(tight), roomy: Layer::new(roomy), safe, occupied, radius }
     }
 
     /// The pixel of a place where one may be: its own keeps the clearance, and so does the place itself.
@@ -185,11 +211,11 @@ impl Space {
         is_open.then_some([x, y])
     }
 
-    /// A pixel where one may be anywhere, a step from another at most.
-    pub fn safe_beside(&self, [x, y]: Pixel) -> Option<Pixel> {
+    /// A pixel of the roomy layer, a step from another at most.
+    pub fn roomy_beside(&self, [x, y]: Pixel) -> Option<Pixel> {
         let steps = [(1, 1), (1, 0), (1, 2), (0, 1), (2, 1), (0, 0), (0, 2), (2, 0), (2, 2)];
         let open =
-            |&[bx, by]: &Pixel| self.safe.rows.has(bx, by) && self.tight.rows.has(x, by) && self.tight.rows.has(bx, y);
+            |&[bx, by]: &Pixel| self.roomy.rows.has(bx, by) && self.tight.rows.has(x, by) && self.tight.rows.has(bx, y);
         steps.map(|(dx, dy)| [x + dx - 1, y + dy - 1]).into_iter().find(open)
     }
 }
