@@ -399,8 +399,8 @@ pub fn from_adjacency(py: Python<'_>, made: Adjacency) -> PyResult<Bound<'_, PyD
 }
 
 /// Labels are few: each is a dictionary of plain values, as in the survey's JSON.
-pub fn from_labels<'py>(py: Python<'py>, made: &[Label]) -> PyResult<Vec<Bound<'py, PyDict>>> {
-    let convert = |label: &Label| {
+pub fn from_labels<'py>(py: Python<'py>, made: &[Label], confidence: &[f64]) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let convert = |(label, &confidence): (&Label, &f64)| {
         let named = Named::new(py);
         let named = match label {
             Label::Corridor { faces, polygon, axis, width, name } => named
@@ -448,9 +448,9 @@ pub fn from_labels<'py>(py: Python<'py>, made: &[Label]) -> PyResult<Vec<Bound<'
                 .with("pattern", *pattern)?
                 .with("name", name)?,
         };
-        Ok(named.done())
+        Ok(named.with("confidence", confidence)?.done())
     };
-    made.iter().map(convert).collect()
+    made.iter().zip(confidence).map(convert).collect()
 }
 
 /// Patterns are few, as labels are.

@@ -67,7 +67,7 @@ mod _core {
             .with("occupancy", convert::from_occupancy(py, made.occupancy)?)?
             .with("walls", convert::from_walls(py, made.walls)?)?
             .with("adjacency", convert::from_adjacency(py, made.adjacency)?)?
-            .with("labels", convert::from_labels(py, &made.labels)?)?
+            .with("labels", convert::from_labels(py, &made.labels, &made.confidence)?)?
             .with("patterns", convert::from_patterns(py, &made.patterns)?)?
             .with("warnings", made.warnings.into_iter().map(|w| (w.code, w.message)).collect::<Vec<_>>())?
             .done())
@@ -234,8 +234,8 @@ mod _core {
         let states = occupancy.states.len().min(occupancy.faces.len());
         convert::demand_subdivision(&subdivision, states, occupancy.edges.len().min(walls.cogent.len()))?;
         let adjacency = adjacency::find_adjacency(&subdivision, &walls);
-        let made = layout.with_grid(py, |grid| {
-            labels::find_labels(&labels::Evidence {
+        let (made, confidence) = layout.with_grid(py, |grid| {
+            let evidence = labels::Evidence {
                 grid,
                 gradients: &gradients,
                 directions: &directions,
@@ -245,8 +245,11 @@ mod _core {
                 adjacency: &adjacency,
                 parameters: &parameters,
                 threads,
-            })
+            };
+            let made = labels::find_labels(&evidence);
+            let confidence = labels::find_confidence(&evidence, &made);
+            (made, confidence)
         })?;
-        convert::from_labels(py, &made)
+        convert::from_labels(py, &made, &confidence)
     }
 }

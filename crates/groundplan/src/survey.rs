@@ -5,7 +5,7 @@ use crate::arrangement::{Arrangement, arrange};
 use crate::directions::{Directions, find_directions};
 use crate::gradients::{Gradients, find_gradients};
 use crate::grid::Grid;
-use crate::labels::{Evidence, Label, Pattern, find_labels, find_patterns};
+use crate::labels::{Evidence, Label, Pattern, find_confidence, find_labels, find_patterns};
 use crate::lines::{Lines, find_lines};
 use crate::occupancy::{Occupancy, find_occupancy};
 use crate::parameters::Parameters;
@@ -45,6 +45,8 @@ pub struct Survey {
     pub adjacency: Adjacency,
     /// II-E: what is what.
     pub labels: Vec<Label>,
+    /// How sure each label is, 0 to 1.
+    pub confidence: Vec<f64>,
     /// What recurs among them.
     pub patterns: Vec<Pattern>,
     /// Partial trouble.
@@ -73,7 +75,7 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
     let occupancy = find_occupancy(grid, &arrangement, &directions, &lines, &gradients, parameters, threads);
     let walls = find_walls(&subdivision, &occupancy, parameters);
     let adjacency = find_adjacency(&subdivision, &walls);
-    let labels = find_labels(&Evidence {
+    let evidence = Evidence {
         grid,
         gradients: &gradients,
         directions: &directions,
@@ -83,9 +85,12 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
         adjacency: &adjacency,
         parameters,
         threads,
-    });
+    };
+    let labels = find_labels(&evidence);
+    let confidence = find_confidence(&evidence, &labels);
     let patterns = find_patterns(&directions, &labels);
-    let warnings = find_warnings(&gradients, &directions, &lines, &labels, parameters);
+    let mut warnings = find_warnings(&gradients, &directions, &lines, &labels, parameters);
+    warnings.extend(undecided(&labels, &confidence));
     debug_assert_eq!(subdivision.problems(), Vec::<String>::new());
     debug_assert_eq!(occupancy.pixels.iter().sum::<u64>(), (frame.width * frame.height) as u64);
     Survey {
@@ -99,9 +104,26 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
         walls,
         adjacency,
         labels,
+        confidence,
         patterns,
         warnings,
     }
+}
+
+/// The evidence does not decide a label that is no surer than this.
+const UNSURE: f64 = 0.5;
+
+/// A warning where the evidence does not decide what something is.
+fn undecided(labels: &[Label], confidence: &[f64]) -> Option<Warning> {
+    let count = confidence.iter().filter(|sure| **sure <= UNSURE).count();
+    let least = confidence.iter().copied().fold(1.0, f64::min);
+    let all = labels.len();
+    (count > 0).then(|| Warning {
+        code: "unsure-labels",
+        message: format!(
+            "the evidence does not decide {count} of {all} labels: their confidence is {UNSURE} or less, {least} at least"
+        ),
+    })
 }
 
 /// Fewer edge pixels than this are no structure.

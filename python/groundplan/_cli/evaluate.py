@@ -75,7 +75,7 @@ def fill(own: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--suite",
         metavar="NAME",
-        help="survey and score each of its cases: warehouses, roadmaps, offices, rooms or names",
+        help="survey and score each of its cases: warehouses, roadmaps, offices, rooms, names or confidence",
     )
     group.add_argument(
         "--maps",
@@ -117,6 +117,9 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _run_suite(arguments: argparse.Namespace) -> None:
+    if arguments.suite == "confidence":
+        _run_confidence(arguments)
+        return
     from groundplan.evaluate import _suite
 
     with terminal.status() as status:
@@ -131,6 +134,30 @@ def _run_suite(arguments: argparse.Namespace) -> None:
         _put_json(result)
     else:
         terminal.put(suite_table(result))
+
+
+def _run_confidence(arguments: argparse.Namespace) -> None:
+    from groundplan.evaluate import _suite
+
+    for flag in ("methods", "maps"):
+        if getattr(arguments, flag) is not None:
+            arguments.parser.error(f"--{flag} does not go with --suite confidence")
+    with terminal.status() as status:
+        result = _suite.reliability(
+            workers=arguments.workers, progress=lambda done, total: status(f"{done} of {total} cases")
+        )
+    if arguments.json:
+        _put_json(result)
+        return
+    bins = [f"to {row['to']:g}" for row in result["all"]]
+    rows = [["labels right of", *bins]]
+    for kind, parts in result.items():
+        rows.append([kind, *(_right(part) for part in parts)])
+    terminal.put("\n".join(terminal.columns(rows, "<" + ">" * len(bins))) + "\n")
+
+
+def _right(part: dict[str, Any]) -> str:
+    return "-" if part["right"] is None else f"{part['right']:.2f} of {part['labels']}"
 
 
 def _put_json(tree: dict[str, Any]) -> None:

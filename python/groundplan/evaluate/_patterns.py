@@ -29,7 +29,7 @@ def pattern_scores(survey: dict[str, Any], truth: dict[str, Any]) -> dict[str, A
     f1 = round(2 * matches(apart, apart <= _SAME_PLACE) / total, 4) if total else None
     errors, racks = [], 0
     for label in survey["labels"]:
-        true = _true_rack(label, truth.get("racks", [])) if label["kind"] == "rack" else None
+        true = true_rack(label, truth.get("racks", [])) if label["kind"] == "rack" else None
         if true is not None:
             racks += 1
             if label.get("pitch") is not None:
@@ -46,7 +46,7 @@ def _apart(a: Floats, b: Floats) -> Floats:
     return apart
 
 
-def _true_rack(label: dict[str, Any], racks: list[dict[str, Any]]) -> dict[str, Any] | None:
+def true_rack(label: dict[str, Any], racks: list[dict[str, Any]]) -> dict[str, Any] | None:
     """The true rack that holds the middle of a label's centre line and runs along it."""
     p, q = np.array(label["axis"][0]), np.array(label["axis"][-1])
     middle = (p + q) / 2

@@ -114,8 +114,13 @@ def points(points: Sequence[Sequence[float]]) -> Floats:
 
 def matches(apart: Floats, allowed: npt.NDArray[np.bool_]) -> int:
     """Size of the one-to-one matching over allowed pairs that costs least."""
+    return len(matched(apart, allowed))
+
+
+def matched(apart: Floats, allowed: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """The pairs of that matching."""
     rows, columns = optional("scipy.optimize").linear_sum_assignment(np.where(allowed, apart, _NO_MATCH))
-    return int(allowed[rows, columns].sum())
+    return [(a, b) for a, b in zip(rows.tolist(), columns.tolist(), strict=True) if allowed[a, b]]
 
 
 def corridor_scores(survey: dict[str, Any], truth: dict[str, Any]) -> dict[str, Any]:
@@ -139,16 +144,26 @@ def corridor_scores(survey: dict[str, Any], truth: dict[str, Any]) -> dict[str, 
             looked += 1
             met += any(areas[k].covers(spot) and turn(axes[k], angle) < _SAME_AXIS for k in tree.query(spot))
 
-    strips = [
-        geometry.LineString([c["a"], c["b"]]).buffer(c["width"] / 2 + _LEEWAY, cap_style="square")
-        for c in truth["corridors"]
-    ]
-    right = 0.0
-    for area, axis in zip(areas, axes, strict=True):
-        along = [strip for strip, angle in zip(strips, bearings, strict=True) if turn(angle, axis) < _SAME_AXIS]
-        right += area.intersection(union(along)).area
+    shares = true_share(labels, truth)
+    right = sum(share * area.area for share, area in zip(shares, areas, strict=True))
     whole = sum(area.area for area in areas)
     return {
         "corridor_recall": round(met / max(looked, 1), 4),
         "corridor_precision": round(right / whole, 4) if whole else 0.0,
     }
+
+
+def true_share(labels: Sequence[dict[str, Any]], truth: dict[str, Any]) -> list[float]:
+    """Of each corridor, the share of its area in true corridors along it."""
+    geometry, union = optional("shapely.geometry"), optional("shapely.ops").unary_union
+    bearings = [bearing(c["a"], c["b"]) for c in truth["corridors"]]
+    strips = [
+        geometry.LineString([c["a"], c["b"]]).buffer(c["width"] / 2 + _LEEWAY, cap_style="square")
+        for c in truth["corridors"]
+    ]
+    shares = []
+    for label in labels:
+        area, axis = geometry.Polygon(label["polygon"]).buffer(0), bearing(label["axis"][0], label["axis"][-1])
+        along = [strip for strip, angle in zip(strips, bearings, strict=True) if turn(angle, axis) < _SAME_AXIS]
+        shares.append(area.intersection(union(along)).area / area.area if area.area else 0.0)
+    return shares

@@ -9,14 +9,15 @@ import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from typing import Any
+from functools import partial
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from groundplan import simulate
 from groundplan._errors import GroundplanError
-from groundplan.evaluate import Case, _scores, score, score_regions, suite
+from groundplan.evaluate import Case, _reliability, _scores, score, score_regions, suite
 from groundplan.evaluate._names import name_scores
 from groundplan.evaluate._roads import road_scores
 from groundplan.maps import Map, read
@@ -24,6 +25,8 @@ from groundplan.parameters import resolve, table
 from groundplan.roadmap import road_map
 from groundplan.stages import cores
 from groundplan.survey import survey
+
+Answer = TypeVar("Answer")
 
 #: Algorithm 1 of the paper as printed, which every other method is held against.
 PRINTED = "paper"
@@ -86,7 +89,7 @@ def run(
         resolve({"labels.method": method})
     for module in ("scipy.optimize", "shapely"):
         _scores.optional(module)
-    scores = _scored(cases, labellers, workers or cores(), progress or (lambda *_: None))
+    scores = _each_case(partial(_case, labellers=labellers), cases, workers or cores(), progress or (lambda *_: None))
     kinds = {
         kind: _summary([by for case, by in zip(cases, scores, strict=True) if case.kind == kind], labellers)
         for kind in dict.fromkeys(case.kind for case in cases)
@@ -103,6 +106,27 @@ def run(
     }
 
 
+def reliability(
+    *, workers: int | None = None, progress: Callable[[int, int], None] | None = None
+) -> dict[str, list[dict[str, Any]]]:
+    """Whether confidence means something: of the labels of each confidence, the share that is right.
+
+    Over the simulated warehouses and offices. By kind of label, and for all: a list of bins, each with its upper end
+    ``to``, how many ``labels`` it has, and the share ``right``, None without any.
+    """
+    for module in ("scipy.optimize", "shapely"):
+        _scores.optional(module)
+    cases = [*suite("warehouses"), *suite("offices")]
+    found = _each_case(_judged, cases, workers or cores(), progress or (lambda *_: None))
+    return _reliability.table([entry for entries in found for entry in entries])
+
+
+def _judged(case: Case) -> list[_reliability.Judged]:
+    make: Callable[..., simulate.Simulated] = getattr(simulate, case.place)
+    made = make(**case.options)
+    return _reliability.judged(survey(made.map, threads=1).to_dict(), made.truth)
+
+
 def _summary(scores: list[dict[str, dict[str, Any]]], labellers: tuple[str, ...]) -> dict[str, Any]:
     """Mean and worst of every score, by method."""
     return {
@@ -111,21 +135,21 @@ def _summary(scores: list[dict[str, dict[str, Any]]], labellers: tuple[str, ...]
     }
 
 
-def _scored(
-    cases: list[Case], labellers: tuple[str, ...], workers: int, progress: Callable[[int, int], None]
-) -> list[dict[str, dict[str, Any]]]:
-    """Scores of each case by method, in the order of the cases."""
+def _each_case(
+    job: Callable[[Case], Answer], cases: list[Case], workers: int, progress: Callable[[int, int], None]
+) -> list[Answer]:
+    """What a job makes of each case, in the order of the cases."""
     if workers == 1:
-        scores = []
+        answers = []
         for case in cases:
-            scores.append(_case(case, labellers))
-            progress(len(scores), len(cases))
-        return scores
+            answers.append(job(case))
+            progress(len(answers), len(cases))
+        return answers
     # Spawned, not forked: the same on every system, and safe whatever threads the caller has.
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(min(workers, len(cases)), context, _die_of_interrupts) as pool:
         try:
-            futures = [pool.submit(_case, case, labellers) for case in cases]
+            futures = [pool.submit(job, case) for case in cases]
             for done, future in enumerate(as_completed(futures), start=1):
                 future.result()
                 progress(done, len(cases))

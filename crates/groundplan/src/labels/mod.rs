@@ -2,6 +2,7 @@
 
 mod barriers;
 mod bays;
+mod confidence;
 mod corridors;
 mod gates;
 mod junctions;
@@ -19,6 +20,7 @@ mod rooms;
 mod strips;
 mod turned;
 
+pub use confidence::find_confidence;
 pub use patterns::{Pattern, PatternKind, find_patterns};
 
 use crate::adjacency::Adjacency;

@@ -3,7 +3,7 @@
 //!
 //! Two blobs in line, or three at a right angle, propose a row or a grid whose pitch divides their distances. How many
 //! others it meets is held against how many it would meet if all lay anyhow: the proposal least to be had by chance is a
-//! pattern when fewer than one in twenty such would be expected of all that were tried (Desolneux, Moisan and Morel 2000).
+//! pattern when fewer than one in a hundred such would be expected of all that were tried (Desolneux, Moisan and Morel 2000).
 
 use super::Evidence;
 use super::outline;
@@ -24,7 +24,7 @@ const BETWEEN: u32 = 4;
 /// Least distance in which anything recurs, metres.
 const OTHER: f64 = 1.0;
 /// So many patterns are expected by chance where one is believed.
-const CHANCE: f64 = 0.05;
+const CHANCE: f64 = 0.01;
 /// This near to a rack stand its posts, metres.
 pub const RIM: f64 = 0.3;
 /// Strength of the period that members of a pattern have.

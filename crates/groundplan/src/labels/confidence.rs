@@ -1,0 +1,227 @@
+//! How sure a label is: what the pixels around it say of the question that it answers, from 0 (nothing speaks for it) to
+//! 1 (nothing against it). Each kind has its own question; the map itself is asked, not the steps that led to the label,
+//! so that two ways to find a label are held to one measure.
+
+use super::{Evidence, JunctionKind, Label};
+use crate::grid::{Grid, State};
+use crate::subdivision::distance;
+
+/// Looks are this far apart, metres.
+const STEP: f64 = 0.2;
+/// A side's structure lies from so far within a corridor to so far outside it, metres.
+const SIDE: [f64; 2] = [-0.2, 0.4];
+/// The middle part of a way's width in which it must be free.
+const MIDDLE: f64 = 0.7;
+/// Beyond a junction an arm is open, or closed, so far, metres.
+const ARM: f64 = 3.0;
+/// A corridor is an arm of a junction when it goes on so far beyond it, metres.
+const BEYOND: f64 = 1.0;
+/// So far beside a door its two spaces are measured, metres, and no wider than so many times the door.
+const ASIDE: f64 = 0.8;
+const WIDER: f64 = 3.0;
+/// Floor shows so far before a rack's faces, metres.
+const FRONT: f64 = 0.4;
+/// Faces more solid than this are more and more like walls.
+const SOLID: f64 = 0.85;
+/// Floor shows round a pillar at this distance from its faces, metres.
+const ROUND: f64 = 0.3;
+
+/// For each label how sure it is, 0 to 1.
+#[must_use]
+pub fn find_confidence(evidence: &Evidence, labels: &[Label]) -> Vec<f64> {
+    let map = Looks { grid: evidence.grid };
+    let sure = |label: &Label| match label {
+        Label::Corridor { axis, width, .. } => map.corridor(*axis, *width),
+        Label::Junction { kind, at, corridors, .. } => map.junction(labels, *kind, *at, corridors),
+        Label::Region { polygon, .. } => map.region(polygon),
+        Label::Door { axis, .. } => map.door(*axis),
+        Label::Rack { axis, width, .. } => map.rack(*axis, *width),
+        Label::Pillar { at, width, .. } => map.pillar(*at, *width),
+    };
+    labels.iter().map(|label| (sure(label).clamp(0.0, 1.0) * 1000.0).round() / 1000.0).collect()
+}
+
+/// The map, asked point by point.
+struct Looks<'a> {
+    grid: &'a Grid<'a>,
+}
+
+impl Looks<'_> {
+    fn state(&self, point: [f64; 2]) -> State {
+        let frame = &self.grid.frame;
+        let [x, y] = frame.to_pixels(point);
+        if x < 0.0 || y < 0.0 || x >= frame.width as f64 || y >= frame.height as f64 {
+            return State::Unknown;
+        }
+        self.grid.table.states[usize::from(self.grid.row(y as usize)[x as usize])]
+    }
+
+    fn is_free(&self, point: [f64; 2]) -> bool {
+        self.state(point) == State::Free
+    }
+
+    /// Free share of a line across a way.
+    fn open(&self, at: [f64; 2], across: [f64; 2], width: f64) -> f64 {
+        let count = (width / STEP).ceil().max(1.0);
+        let offsets = (0..count as usize).map(|n| ((n as f64 + 0.5) / count - 0.5) * width);
+        let free = offsets.filter(|v| self.is_free([at[0] + v * across[0], at[1] + v * across[1]])).count();
+        free as f64 / count
+    }
+
+    /// Free along its middle, and structure along both sides: of an empty rack posts are enough, as long as they come
+    /// again and again.
+    fn corridor(&self, axis: [[f64; 2]; 2], width: f64) -> f64 {
+        let [_, across] = frame_of(axis);
+        let mut free = 0.0;
+        let mut walled = [0.0; 2];
+        let places = along(axis);
+        for &at in &places {
+            free += self.open(at, across, MIDDLE * width);
+            for (side, share) in [-1.0, 1.0].into_iter().zip(&mut walled) {
+                *share += f64::from(u8::from(self.is_bounded(at, across, side, width / 2.0)));
+            }
+        }
+        let count = places.len() as f64;
+        let [left, right] = walled.map(|share| (2.0 * share / count).min(1.0));
+        free / count * left.min(right).sqrt()
+    }
+
+    /// True when something that is not free lies about a way's side.
+    fn is_bounded(&self, at: [f64; 2], across: [f64; 2], side: f64, half: f64) -> bool {
+        let reach = SIDE.map(|off| half + off);
+        let steps = ((reach[1] - reach[0]) / (STEP / 2.0)).ceil() as usize;
+        (0..=steps).any(|n| {
+            let v = side * (reach[0] + (reach[1] - reach[0]) * n as f64 / steps as f64);
+            !self.is_free([at[0] + v * across[0], at[1] + v * across[1]])
+        })
+    }
+
+    /// Every way out that its type counts is open for some metres, and every one that it denies is closed.
+    fn junction(&self, labels: &[Label], kind: JunctionKind, at: [f64; 2], corridors: &[u32]) -> f64 {
+        let mut sure = 1.0_f64;
+        let own: Vec<([[f64; 2]; 2], f64)> = corridors
+            .iter()
+            .filter_map(|&id| match labels.get(id as usize) {
+                Some(Label::Corridor { axis, width, .. }) => Some((*axis, *width)),
+                _ => None,
+            })
+            .collect();
+        let widest = own.iter().map(|(_, width)| *width).fold(0.0, f64::max);
+        for (n, &(axis, width)) in own.iter().enumerate() {
+            let [heading, across] = frame_of(axis);
+            let others = own.iter().enumerate().filter(|(m, _)| *m != n).map(|(_, (_, width))| *width);
+            let reach = if kind == JunctionKind::End { 0.0 } else { others.fold(0.0, f64::max).max(0.5 * width) / 2.0 };
+            for sign in [-1.0, 1.0] {
+                let way = [sign * heading[0], sign * heading[1]];
+                let end = axis.map(|end| (end[0] - at[0]) * way[0] + (end[1] - at[1]) * way[1]);
+                let is_arm = end[0].max(end[1]) > reach + BEYOND;
+                // Another corridor may be this one's other half.
+                let is_other = own.iter().enumerate().any(|(m, (other, _))| {
+                    let [direction, _] = frame_of(*other);
+                    let ahead = other.map(|end| (end[0] - at[0]) * way[0] + (end[1] - at[1]) * way[1]);
+                    m != n
+                        && (direction[0] * way[0] + direction[1] * way[1]).abs() > 0.9
+                        && ahead[0].max(ahead[1]) > reach + BEYOND
+                });
+                let depth = if is_arm { ARM } else { ARM.max(widest) };
+                let steps = (depth / STEP).ceil() as usize;
+                let open = (1..=steps)
+                    .map(|n| reach + n as f64 * STEP)
+                    .map(|t| self.open([at[0] + t * way[0], at[1] + t * way[1]], across, MIDDLE * width))
+                    .fold(1.0, f64::min);
+                sure = sure.min(if is_arm || is_other { open } else { 1.0 - open });
+            }
+        }
+        if own.is_empty() { 0.0 } else { sure }
+    }
+
+    /// Share of the outline with something behind it: the rest is open, a door or the end of what was seen.
+    fn region(&self, polygon: &[[f64; 2]]) -> f64 {
+        let (mut bounded, mut all) = (0usize, 0usize);
+        for (n, &from) in polygon.iter().enumerate() {
+            let side = [from, polygon[(n + 1) % polygon.len()]];
+            let [_, [nx, ny]] = frame_of(side);
+            for [x, y] in along(side) {
+                all += 1;
+                // Counter-clockwise: outside is on the right.
+                let near = (1..=4).map(|n| f64::from(n) * 0.05);
+                bounded +=
+                    usize::from(near.into_iter().any(|d| self.state([x - d * nx, y - d * ny]) == State::Occupied));
+            }
+        }
+        bounded as f64 / all.max(1) as f64
+    }
+
+    /// How much narrower it is than the spaces on both its sides.
+    fn door(&self, axis: [[f64; 2]; 2]) -> f64 {
+        let [along, across] = frame_of(axis);
+        let width = distance(axis[0], axis[1]).max(STEP);
+        let middle = [0, 1].map(|n| f64::midpoint(axis[0][n], axis[1][n]));
+        let beside = |side: f64| {
+            let depths = (1..=4).map(|n| ASIDE * f64::from(n) / 2.0);
+            depths
+                .map(|depth| {
+                    let at = [middle[0] + side * depth * across[0], middle[1] + side * depth * across[1]];
+                    let reach = |way: f64| {
+                        let steps = (WIDER * width / (STEP / 2.0)) as usize;
+                        let free = (0..steps).take_while(|n| {
+                            let t = way * *n as f64 * STEP / 2.0;
+                            self.is_free([at[0] + t * along[0], at[1] + t * along[1]])
+                        });
+                        free.count() as f64 * STEP / 2.0
+                    };
+                    reach(1.0) + reach(-1.0)
+                })
+                .fold(0.0, f64::max)
+        };
+        1.0 - width / beside(1.0).min(beside(-1.0)).max(width)
+    }
+
+    /// Something stands in it all along, and both its faces were seen: of what lies behind a face that was not, nobody
+    /// knows where it ends.
+    fn rack(&self, axis: [[f64; 2]; 2], width: f64) -> f64 {
+        let [_, across] = frame_of(axis);
+        let places = along(axis);
+        let taken: f64 = places.iter().map(|&at| (2.0 * (1.0 - self.open(at, across, width))).min(1.0)).sum();
+        let seen = [-1.0, 1.0].map(|side| {
+            let is_seen = |at: &&[f64; 2]| {
+                let before = [0, 1].map(|n| at[n] + side * (width / 2.0 + FRONT) * across[n]);
+                self.is_free(before)
+            };
+            places.iter().filter(is_seen).count() as f64
+        });
+        let solid = [-1.0, 1.0].map(|side| {
+            let is_solid = |at: &&[f64; 2]| {
+                let near = (-4..=4).map(|n| side * width / 2.0 + f64::from(n) * 0.05);
+                near.into_iter().any(|v| self.state([at[0] + v * across[0], at[1] + v * across[1]]) == State::Occupied)
+            };
+            places.iter().filter(is_solid).count() as f64
+        });
+        let count = places.len() as f64;
+        // Goods and posts leave gaps; two faces without any may be walls with nothing known between.
+        let walls = ((solid[0].min(solid[1]) / count - SOLID) / (1.0 - SOLID)).max(0.0);
+        (1.0 - walls / 2.0) * taken / count * f64::midpoint(1.0, seen[0].min(seen[1]) / count) * seen[0].max(seen[1])
+            / count
+    }
+
+    /// Share of the ring round it that is floor.
+    fn pillar(&self, at: [f64; 2], width: f64) -> f64 {
+        let radius = width / std::f64::consts::SQRT_2 + ROUND;
+        let ring = (0..32).map(|n| f64::from(n) * std::f64::consts::TAU / 32.0);
+        let free = ring.filter(|a| self.is_free([at[0] + radius * libm::cos(*a), at[1] + radius * libm::sin(*a)]));
+        free.count() as f64 / 32.0
+    }
+}
+
+/// Unit vectors along a straight piece and to its left.
+fn frame_of([from, to]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    let length = distance(from, to).max(1e-9);
+    let [x, y] = [0, 1].map(|n| (to[n] - from[n]) / length);
+    [[x, y], [-y, x]]
+}
+
+/// Places along a straight piece, in the middles of equal steps.
+fn along([from, to]: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
+    let count = (distance(from, to) / STEP).round().max(1.0);
+    (0..count as usize).map(|n| [0, 1].map(|k| from[k] + (to[k] - from[k]) * (n as f64 + 0.5) / count)).collect()
+}
