@@ -12,7 +12,7 @@ from groundplan.figures import draw_survey
 
 DOCS = Path(__file__).parent
 PROGRAM = Path(sysconfig.get_path("scripts")) / "groundplan"
-BEGIN, END = "<!-- the table begins -->", "<!-- the table ends -->"
+SUITES = ("warehouses", "offices", "names", "confidence")
 
 
 def picture() -> None:
@@ -27,14 +27,16 @@ def picture() -> None:
 
 
 def scores() -> None:
-    """The suite's table into docs/accuracy.md."""
-    table = subprocess.run(
-        [PROGRAM, "evaluate", "--suite", "warehouses"], check=True, stdout=subprocess.PIPE, text=True
-    ).stdout
+    """The suites' tables into docs/accuracy.md, each between its two marks."""
     page = DOCS / "accuracy.md"
-    before, _, rest = page.read_text(encoding="utf-8").partition(BEGIN)
-    after = rest.partition(END)[2]
-    page.write_text(f"{before}{BEGIN}\n\n```\n{table}```\n\n{END}{after}", encoding="utf-8")
+    for suite in SUITES:
+        table = subprocess.run(
+            [PROGRAM, "evaluate", "--suite", suite], check=True, stdout=subprocess.PIPE, text=True
+        ).stdout
+        begin, end = f"<!-- {suite} -->", f"<!-- end of {suite} -->"
+        before, _, rest = page.read_text(encoding="utf-8").partition(begin)
+        after = rest.partition(end)[2]
+        page.write_text(f"{before}{begin}\n\n```\n{table}```\n\n{end}{after}", encoding="utf-8")
 
 
 if __name__ == "__main__":
