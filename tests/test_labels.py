@@ -89,6 +89,23 @@ def test_a_space_behind_a_door_is_a_room_and_not_a_corridor(opening: int, corrid
     assert [label["type"] for label in survey.of_kind("junction") if label["type"] != "end"] == ["T"] * (corridors - 1)
 
 
+def between_goods(apart: int) -> npt.NDArray[np.uint8]:
+    """A way of 30 m by 3 m that bends by 0.3 m, between goods that stand back from it by up to so many pixels."""
+    draws = np.random.default_rng(3)
+    picture = np.full((180, 640), 205, np.uint8)
+    for x in range(20, 620, 12):
+        bend = round(6 * np.sin(x / 70))
+        low, high = (60 + bend - int(draws.integers(0, apart + 1)), 120 + bend + int(draws.integers(0, apart + 1)))
+        picture[low:high, x : x + 12] = 254
+        picture[low, x : x + 12] = picture[high, x : x + 12] = 0
+    return picture
+
+
+def test_a_bent_way_between_goods_at_every_depth_is_seen_over_most_of_its_length() -> None:
+    corridors = groundplan.survey(between_goods(24), resolution=0.05).of_kind("corridor")
+    assert sum(np.hypot(*np.subtract(*corridor["axis"])) for corridor in corridors) >= 24.0
+
+
 @pytest.mark.parametrize("method", ["strips", "paper"])
 def test_the_paper_and_its_successor_on_a_crossing(method: str) -> None:
     survey = groundplan.survey(zoo.ZOO["crossing"](), resolution=zoo.RESOLUTION, labels_method=method)

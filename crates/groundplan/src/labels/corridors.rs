@@ -6,7 +6,7 @@
 //! the one with the most wall along it is kept, and the others keep what is left of them.
 
 use super::turned::Turned;
-use super::{Evidence, barriers};
+use super::{Evidence, barriers, ragged};
 use crate::parameters::Parameters;
 
 /// A strip of free space along one direction, in the direction's own places (metres along and across).
@@ -90,9 +90,31 @@ const WEAKER: f64 = 0.45;
 /// Strips that overlap across by more than this share of the narrower one are rivals.
 const RIVAL: f64 = 0.25;
 
+/// Strips whose directions differ by an angle of a smaller sine run nearly the same way.
+const ASKEW: f64 = 0.5;
+
 /// Corridors along every direction, in the order of the directions and their places.
 pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
-    views.iter().flat_map(|view| along(evidence, views, view)).collect()
+    let mut strips: Vec<Strip> = views.iter().flat_map(|view| along(evidence, views, view)).collect();
+    for view in views {
+        let known: Vec<Strip> = strips.iter().filter(|s| s.direction == view.direction).cloned().collect();
+        let mut ragged = ragged::find(view, evidence.parameters, &known);
+        ragged.retain(|way| !strips.iter().any(|strip| is_askew_in(views, way, strip)));
+        strips.extend(ragged);
+    }
+    strips.sort_by_key(|strip| strip.direction);
+    strips
+}
+
+/// True when one strip's middle lies in another that runs nearly the same way.
+fn is_askew_in(views: &[Turned], one: &Strip, other: &Strip) -> bool {
+    let (own, its) = (&views[one.direction], &views[other.direction]);
+    let middle = own.to_map([f64::midpoint(one.along[0], one.along[1]), one.middle()]);
+    let [u, v] = its.place(middle);
+    one.direction != other.direction
+        && libm::sin(own.angle - its.angle).abs() < ASKEW
+        && (other.along[0]..=other.along[1]).contains(&u)
+        && (other.across[0]..=other.across[1]).contains(&v)
 }
 
 fn along(evidence: &Evidence, views: &[Turned], view: &Turned) -> Vec<Strip> {
@@ -336,7 +358,7 @@ impl Column {
 }
 
 /// All maximal pieces with the greatest sums (Ruzzo and Tompa 1999): from, to.
-fn best_pieces(scores: &[f64]) -> Vec<(usize, usize)> {
+pub fn best_pieces(scores: &[f64]) -> Vec<(usize, usize)> {
     struct Piece {
         from: usize,
         to: usize,

@@ -16,6 +16,7 @@ mod pillars;
 mod pitch;
 mod places;
 mod racks;
+mod ragged;
 mod rooms;
 mod strips;
 mod turned;
