@@ -204,6 +204,13 @@ FORMATS: dict[str, Format] = {
             extra="fleet",
         ),
         Format(
+            "straight",
+            ".straight.yaml",
+            "the map turned so that its strongest direction is the x axis (YAML, PGM), and the turn both ways (JSON)",
+            "map_server, Nav2, AMCL, every planner on grids",
+            map="must",
+        ),
+        Format(
             "vda5050",
             ".zones.json",
             "a zone set of VDA 5050 3.0: blocked, directed and slow zones",
