@@ -79,6 +79,7 @@ OPTIONS: dict[str, Option] = {
         "LAT,LON,HEADING",
         "numbers",
     ),
+    "scale": Option("the plan at 1 to so many (default: the largest round one that fits on 400 mm)", "N", "number"),
     "height": Option("how high walls and rooms are, metres; nobody has measured it (default 3)", "METRES", "number"),
 }
 
@@ -229,6 +230,16 @@ FORMATS: dict[str, Format] = {
             "the map turned so that its strongest direction is the x axis (YAML, PGM), and the turn both ways (JSON)",
             "map_server, Nav2, AMCL, every planner on grids",
             map="must",
+        ),
+        Format(
+            "svg",
+            ".plan.svg",
+            "the plan to scale, a layer for each kind, with legend and scale bar; the map beneath it where it is given",
+            "browsers, Inkscape, Illustrator, any drawing program",
+            options=("scale",),
+            needs=("shapely",),
+            extra="fleet",
+            map="may",
         ),
         Format(
             "vda5050",

@@ -19,7 +19,7 @@ from matplotlib.textpath import TextPath
 from matplotlib.transforms import IdentityTransform
 
 from groundplan.figures import _style as ink
-from groundplan.figures._names import Names, meetings, widest_gap
+from groundplan.figures._names import AxesNames, Names, meetings, widest_gap
 from groundplan.survey import Label, Survey
 
 Points = npt.NDArray[np.float64]
@@ -35,13 +35,14 @@ def draw_labels(axes: Axes, survey: Survey) -> None:
     """Draw every label, the large beneath the small."""
     kinds = {kind: survey.of_kind(kind) for kind in ("region", "rack", "corridor", "junction", "door", "pillar")}
     dots = points_per_metre(axes)
-    names = Names(axes, dots)
+    names = AxesNames(axes, dots)
     draw_regions(axes, kinds["region"])
     draw_racks(axes, kinds["rack"])
     draw_doors(axes, kinds["door"], survey)
     draw_pillars(axes, kinds["pillar"])
     draw_junctions(axes, kinds["junction"], kinds["corridor"], names)
-    draw_corridors(axes, kinds["corridor"], kinds["junction"], names)
+    draw_corridors(axes, kinds["corridor"])
+    name_corridors(kinds["corridor"], kinds["junction"], names)
     name_regions(kinds["region"], kinds["corridor"], names)
 
 
@@ -145,8 +146,8 @@ def draw_racks(axes: Axes, racks: Sequence[Label]) -> None:
     axes.add_collection(collection, autolim=False)
 
 
-def draw_corridors(axes: Axes, corridors: Sequence[Label], junctions: Sequence[Label], names: Names) -> None:
-    """Translucent polygons with their centre lines, and their names along these."""
+def draw_corridors(axes: Axes, corridors: Sequence[Label]) -> None:
+    """Translucent polygons with their centre lines."""
     # One shape for them all: where two cross, the tint is no deeper.
     rings = [closed(wound(label["polygon"], 1)) for label in corridors if label.get("polygon")]
     if rings:
@@ -158,6 +159,11 @@ def draw_corridors(axes: Axes, corridors: Sequence[Label], junctions: Sequence[L
     lines = [np.asarray(corridor["axis"], dtype=np.float64) for corridor in corridors]
     style = LineCollection(lines, colors=[to_rgba(ink.CORRIDOR, 0.95)], linewidths=0.8, linestyles="--", zorder=5)
     axes.add_collection(style, autolim=False)
+
+
+def name_corridors(corridors: Sequence[Label], junctions: Sequence[Label], names: Names) -> None:
+    """Names along the centre lines, where these have most room between crossings."""
+    lines = [np.asarray(corridor["axis"], dtype=np.float64) for corridor in corridors]
     crossings = np.array([label["at"] for label in junctions], dtype=np.float64).reshape(-1, 2)
     for corridor, line in zip(corridors, lines, strict=True):
         name = corridor.get("name")

@@ -19,10 +19,10 @@ CLEAR = 1.5
 
 
 class Names:
-    """Writes names on axes, and knows where something stands already; `dots` are points of type to a metre."""
+    """Writes names, and knows where something stands already; `dots` are points of type to a metre."""
 
-    def __init__(self, axes: Axes, dots: float) -> None:
-        self.axes, self.dots = axes, dots
+    def __init__(self, dots: float) -> None:
+        self.dots = dots
         self.taken: list[tuple[float, float, float, float]] = []
 
     def box(
@@ -46,8 +46,28 @@ class Names:
     def write(
         self, at: Sequence[float] | Points, text: str, size: float, colour: str, zorder: float, angle: float = 0.0
     ) -> None:
-        """Write centred on a place, with a light seam that keeps it legible on anything."""
+        """Write centred on a place, turned by so many degrees, with a light seam that keeps it legible on anything."""
         self.take(at, LETTER * size * len(text), LINE * size, angle)
+        self.put(at, text, size, colour, zorder, angle)
+
+    def put(
+        self, at: Sequence[float] | Points, text: str, size: float, colour: str, zorder: float, angle: float
+    ) -> None:
+        """Put a name on whatever it is written on."""
+        raise NotImplementedError
+
+
+class AxesNames(Names):
+    """Names on axes."""
+
+    def __init__(self, axes: Axes, dots: float) -> None:
+        super().__init__(dots)
+        self.axes = axes
+
+    def put(
+        self, at: Sequence[float] | Points, text: str, size: float, colour: str, zorder: float, angle: float
+    ) -> None:
+        """Put a name on the axes."""
         seam = [withStroke(linewidth=max(1.2, 0.28 * size), foreground=(1, 1, 1, 0.85))]
         self.axes.text(
             at[0],
