@@ -198,6 +198,16 @@ FORMATS: dict[str, Format] = {
             extra="fleet",
         ),
         Format(
+            "pdf",
+            ".report.pdf",
+            "a report: the plan, the figures that the map allows, a table of places, warnings",
+            "people, on paper and on screens",
+            options=("date",),
+            needs=("shapely",),
+            extra="fleet",
+            map="may",
+        ),
+        Format(
             "rmf-building",
             ".building.yaml",
             "lanes, walls and floor in Cartesian metres",
