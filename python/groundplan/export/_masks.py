@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from groundplan._polygons import fill
 from groundplan.export import _grids
@@ -62,8 +63,16 @@ def bands(frame: Frame, painted: Sequence[Painted]) -> Iterator[Bytes]:
             first, last = max(int(low[1]) - top, 0), min(int(high[1]) + 1 - top, len(band))
             if left < right and first < last:
                 window = band[first:last, left:right]
-                window[fill([ring - (left, top + first) for ring in rings], window.shape)] = value
+                window[_filled([ring - (left, top + first) for ring in rings], window.shape)] = value
         yield band
+
+
+def _filled(rings: list[npt.NDArray[np.float64]], shape: tuple[int, ...]) -> npt.NDArray[np.bool_]:
+    """As `fill`, which goes row by row: of a wall that runs upwards there are fewer columns."""
+    height, width = shape
+    if height <= width:
+        return fill(rings, (height, width))
+    return fill([ring[:, ::-1] for ring in rings], (width, height)).T
 
 
 def polygons(shape: Any) -> list[Any]:

@@ -32,6 +32,8 @@ HEAD = ("Name", "Kind", "Width, m", "Length, m", "Area, m²", "In region", "Neig
 WIDTHS = (2.0, 1.5, -1.0, -1.0, -1.0, 1.2, 2.7)
 #: With more faces than this a figure of them all is a grey sheet, and takes a minute.
 MOST_FACES = 20_000
+#: Nobody turns more than fifty pages of a table.
+MOST_PLACES = 50 * _report.ROWS
 #: Radiograms and directions are drawn over a map of so many pixels.
 SMALL = 1200
 
@@ -74,9 +76,12 @@ def _sheets(survey: Survey, title: str, when: datetime, map: Map | None) -> Iter
         yield abstraction(survey, small)
         yield connectivity(survey, small)
     kinds = list(dict.fromkeys(place.kind for place in found))
-    rows = [_row(place, found) for place in sorted(found, key=lambda place: (kinds.index(place.kind), place.name))]
+    in_order = sorted(found, key=lambda place: (kinds.index(place.kind), place.name))
+    rows = [_row(place, found) for place in in_order[:MOST_PLACES]]
     if rows:
-        yield from _report.tables("Places", HEAD, rows, WIDTHS)
+        left = len(found) - len(rows)
+        title = f"Places; {left} more are in the table that --to csv writes" if left else "Places"
+        yield from _report.tables(title, HEAD, rows, WIDTHS)
     yield from _report.warnings(survey)
 
 
