@@ -121,3 +121,15 @@ def test_warnings_are_told_on_the_first_page_and_in_full_on_the_last(tmp_path: P
     sheets = text(once(survey, "pdf", tmp_path))
     assert "a sentence that goes on" in sheets[0] and "more on the sheet of warnings" in sheets[0]
     assert " ".join(sheets[-1].split()).count("to its end") == 3 and "unknown-as-free" in sheets[-1]
+
+
+def test_a_table_that_nobody_would_turn_ends_and_says_where_the_rest_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from groundplan.export import pdf
+
+    monkeypatch.setattr(pdf, "MOST_PLACES", 20)
+    sheets = text(once(demo(), "pdf", tmp_path))
+    more = len(demo().labels) - 20
+    assert any(f"Places; {more} more are in the table that --to csv writes" in sheet for sheet in sheets)
+    assert row(sheets, "A01") and not any("S2-08  " in sheet for sheet in sheets)
