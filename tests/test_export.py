@@ -159,6 +159,18 @@ def test_a_survey_is_exported_as_it_is_made(tmp_path: Path, capsys: pytest.Captu
     assert (tmp_path / "later.csv").read_bytes() == (tmp_path / "out" / "export" / "hall.places.csv").read_bytes()
 
 
+def test_the_map_is_found_where_a_format_shows_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(capsys, "survey", write_map(tmp_path), "-o", tmp_path / "out", "-q").code == 0
+    ran = call(capsys, "export", tmp_path / "out", "--to", "dxf")
+    assert (ran.code, ran.err) == (0, "") and ran.out.splitlines()[-1].endswith("hall.underlay.png")
+    (tmp_path / "hall.pgm").unlink()
+    ran = call(capsys, "export", tmp_path / "out", "--to", "dxf", "-o", tmp_path / "without")
+    assert ran.code == 0 and "written without the map's pixels" in ran.err
+    assert files(tmp_path / "without") == {"hall.dxf"}
+    ran = call(capsys, "export", tmp_path / "out", "--to", "dxf", "--map", tmp_path / "hall.yaml")
+    assert ran.code == 3
+
+
 def test_the_list_of_formats_loads_no_format() -> None:
     code = "import sys, groundplan.export; print({'numpy', 'shapely', 'networkx', 'ezdxf'} & set(sys.modules))"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "set()"

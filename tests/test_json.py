@@ -89,6 +89,8 @@ def test_a_survey_differs_when_a_part_does() -> None:
         ({"lines": 7}, "survey.content"),
         ({"map": {}}, "survey.content"),
         ({"evidence": None}, "survey.content"),
+        ({"labels": [{"kind": "pillar", "at": [float("nan"), 0.0]}]}, "survey.content"),
+        ({"labels": [{"kind": "pillar", "at": [1.0, 0.0], "width": float("inf")}]}, "survey.content"),
     ],
 )
 def test_what_is_no_survey_is_refused_by_name(change: dict[str, Any], code: str) -> None:

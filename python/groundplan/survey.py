@@ -547,8 +547,10 @@ def checked(label: Any) -> Label:
             points = np.asarray(value)
             if points.dtype.kind not in "if" or points.shape[-1:] != (2,) or points.ndim != 1 + (key != "at"):
                 raise ValueError(f"the {key} of a {label['kind']} is not made of points")
-        if key in ("width", "area"):
-            float(value)
+            if not np.isfinite(points).all():
+                raise ValueError(f"the {key} of a {label['kind']} is not finite")
+        if key in ("width", "area") and not np.isfinite(float(value)):
+            raise ValueError(f"the {key} of a {label['kind']} is {value}")
     return dict(label)
 
 

@@ -12,6 +12,7 @@ from groundplan._cli.arguments import add_reading, number, reading
 from groundplan.export import FORMATS, OPTIONS, Format, Option, format_named
 
 if TYPE_CHECKING:
+    from groundplan.maps import Map
     from groundplan.survey import Survey
 
 
@@ -29,7 +30,11 @@ def fill(own: argparse.ArgumentParser) -> None:
         type=path,
         help="the file, or a directory for files with the map's name (default: export, beside the survey)",
     )
-    own.add_argument("--map", metavar="MAP", help="the surveyed map, for formats that show its pixels")
+    own.add_argument(
+        "--map",
+        metavar="MAP",
+        help="the surveyed map, for formats that use its pixels, where the survey's own name for it leads nowhere",
+    )
     own.add_argument("-q", "--quiet", action="store_true", help="print no names: only errors are told")
     add_options(own)
     add_reading(own, frame=False)
@@ -102,22 +107,35 @@ def run(arguments: argparse.Namespace) -> None:
     given = options(arguments, arguments.to)
     file, survey = open_survey(arguments.survey)
     with terminal.status(arguments.quiet) as status:
-        if arguments.map is not None or any(form.map == "must" for form in arguments.to):
-            given["map"] = _map(arguments, survey, file)
+        map = _map(arguments, survey, file)
+        if map is not None:
+            given["map"] = map
         out = arguments.out or f"{file.parent / 'export'}{os.sep}"
         written = write(survey, arguments.to, out, given, status)
     if not arguments.quiet:
         terminal.put("".join(f"{file}\n" for file in written))
 
 
-def _map(arguments: argparse.Namespace, survey: Survey, file: Path) -> Any:
+def _map(arguments: argparse.Namespace, survey: Survey, file: Path) -> Map | None:
+    """The surveyed map, where a format has a use for it; None where it is not needed and not to be had."""
     from groundplan._cli.figures import agree, find_map
+    from groundplan._errors import GroundplanError
     from groundplan.maps import read
 
-    source = arguments.map if arguments.map is not None else find_map(survey, file)
-    frame = {"resolution": survey.map.resolution, "origin": survey.map.origin}
-    map = read(source, **{**survey.reading, **reading(arguments), **frame})
-    agree(survey, map, file, source, arguments.quiet)
+    uses = {form.map for form in arguments.to}
+    if uses == {"no"}:
+        return None
+    try:
+        source = arguments.map if arguments.map is not None else find_map(survey, file)
+        frame = {"resolution": survey.map.resolution, "origin": survey.map.origin}
+        map = read(source, **{**survey.reading, **reading(arguments), **frame})
+        agree(survey, map, file, source, arguments.quiet)
+    except GroundplanError as fault:
+        if arguments.map is not None or "must" in uses:
+            raise
+        if not arguments.quiet:
+            terminal.say("warning", f"written without the map's pixels: {fault}")
+        return None
     return map
 
 

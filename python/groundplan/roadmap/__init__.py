@@ -39,7 +39,8 @@ def road_map(
     survey
         Its corridors, junctions, racks, regions and doors are used.
     vehicle_width
-        Metres; corridors and doors that are narrower are left out.
+        Metres; corridors and doors that are narrower are left out. By default corridors under 1.2 m are: no lane in
+        them keeps 0.4 m from what wavers on both sides.
     rules
         Speeds and one-way lanes, as `groundplan.roadmap._rules` describes them: a TOML file, or its entries.
     spurs
@@ -63,4 +64,4 @@ def road_map(
     from groundplan.roadmap._build import build
     from groundplan.roadmap._rules import rules as read_rules
 
-    return build(survey, read_rules(rules), vehicle_width or 0.0, spurs)
+    return build(survey, read_rules(rules), vehicle_width, spurs)

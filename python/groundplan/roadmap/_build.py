@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from groundplan.survey import Survey
 
 
-def build(survey: Survey, rules: list[Rule], vehicle_width: float, spurs: float | None) -> RoadMap:
+def build(survey: Survey, rules: list[Rule], vehicle_width: float | None, spurs: float | None) -> RoadMap:
     """As `groundplan.roadmap.road_map`, its options checked."""
     made = _Builder(survey, rules, vehicle_width)
     made.junctions()
@@ -31,11 +31,12 @@ def build(survey: Survey, rules: list[Rule], vehicle_width: float, spurs: float 
 class _Builder:
     """Nodes and lanes as they are found."""
 
-    def __init__(self, survey: Survey, rules: list[Rule], vehicle_width: float) -> None:
-        self.survey, self.rules, self.vehicle = survey, rules, vehicle_width
+    def __init__(self, survey: Survey, rules: list[Rule], vehicle_width: float | None) -> None:
+        self.survey, self.rules, self.vehicle = survey, rules, vehicle_width or 0.0
+        least = _lanes.NARROWEST_M if vehicle_width is None else vehicle_width
         self.places = places(survey)
         ways = _lanes.ways([p for p in self.places if self._open(p)])
-        self.ways = {corridor: way for corridor, way in ways.items() if way.width >= vehicle_width}
+        self.ways = {corridor: way for corridor, way in ways.items() if way.width >= least}
         self.nodes: list[Node] = []
         self.lanes: list[Lane] = []
         self.picks: list[PickFace] = []

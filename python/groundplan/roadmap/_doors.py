@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 #: What a lane keeps from what is not free, metres; at the door itself the jambs are nearer.
 CLEAR_M = 0.4
+#: Of a door's lane so much may lie between the regions, in the wall itself, metres.
+THRESHOLD_M = 0.3
 #: A door this near to a stop, along the lane, is reached from that stop, metres.
 AT_STOP_M = 0.3
 #: How far into a room a lane may go straight before it turns, metres, and in which steps.
@@ -93,7 +95,11 @@ class Regions:
         """Whether a line keeps clear of the region's walls, but at its door."""
         line = shapely.LineString(points)
         if door is not None:
-            line = line.difference(shapely.Point(door.centre).buffer((door.width or 1.0) / 2 + 2 * CLEAR_M))
+            mouth = shapely.Point(door.centre).buffer((door.width or 1.0) / 2 + 2 * CLEAR_M)
+            # There the jambs are near; what stands in the way is not.
+            if line.intersection(mouth).difference(self.places[region].shape).length > THRESHOLD_M:
+                return False
+            line = line.difference(mouth)
         return line.is_empty or bool(self.space(region).covers(line))
 
     def open(self, region: int, points: list[Point]) -> bool:

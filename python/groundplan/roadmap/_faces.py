@@ -57,7 +57,7 @@ def bays(survey: Survey, places: list[Place], ways: dict[int, Way]) -> list[Bay]
         if length <= 0 or pitch <= 0 or length / pitch > 10_000:
             continue
         u, v = (x1 - x0) / length, (y1 - y0) / length
-        first = float(label.get("phase", 0.0)) % pitch
+        first = float(label.get("phase") or 0.0) % pitch
         # A rack that ends a little before its last post has that bay all the same.
         count = max(0, math.floor((length - first) / pitch + 0.25))
         turned = not forwards(u, v)

@@ -22,6 +22,8 @@ CROSSING_RAD = math.radians(20)
 #: Crossings of one junction that are nearer to each other than this are one node, metres: what a lane may be off the
 #: centre line, from either side.
 ONE_NODE_M = 0.25
+#: Where a corridor is narrower than this, a lane does not keep 0.4 m from walls that waver, metres.
+NARROWEST_M = 1.2
 #: A node at a dead end stands so far before the wall, metres.
 BEFORE_WALL_M = 0.6
 
