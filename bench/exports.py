@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import groundplan
-from groundplan import Directions, Lines, from_array
+from groundplan import Directions, FormatError, Lines, from_array
 from groundplan.export import FORMATS
 
 LINES = 318
@@ -30,7 +30,11 @@ def main() -> None:
             for what, chosen in more:
                 options = chosen | ({"map": map} if form.map != "no" else {})
                 start = time.perf_counter()
-                written = survey.export(Path(directory) / name / "x", form.name, **options)
+                try:
+                    written = survey.export(Path(directory) / name / "x", form.name, **options)
+                except FormatError as refused:  # an empty hall has no roads
+                    print(f"{name + what:<20} {refused}")
+                    continue
                 size = sum(file.stat().st_size for file in written) / 1e6
                 print(f"{name + what:<20} {time.perf_counter() - start:7.2f} s {size:8.2f} MB")
 

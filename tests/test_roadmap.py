@@ -147,6 +147,22 @@ def test_what_a_vehicle_does_not_fit_is_left_out() -> None:
     assert road_map(demo(), vehicle_width=50.0).nodes == []
 
 
+def test_narrow_corridors_have_lanes_where_all_are_narrow() -> None:
+    survey = jones_farms()
+    long = [c for c in survey.of_kind("corridor") if c["width"] < 1.2 and math.dist(*c["axis"]) > 20]
+    assert len(long) == 4
+    assert {c["name"] for c in long} <= {lane.name for lane in road_map(survey).lanes}
+
+
+def test_a_gap_through_a_row_has_no_lane_but_for_a_vehicle_that_fits() -> None:
+    survey = demo()
+    narrow = next(n for n, label in enumerate(survey.labels) if label.get("name") == "C02")
+    labels = [label | {"width": 0.9} if n == narrow else label for n, label in enumerate(survey.labels)]
+    gap = dataclasses.replace(survey, labels=labels)
+    assert "C02" not in {lane.name for lane in road_map(gap).lanes}
+    assert "C02" in {lane.name for lane in road_map(gap, vehicle_width=0.6).lanes}
+
+
 def test_rules_set_speeds_and_one_way_lanes_by_name(tmp_path: Path) -> None:
     file = tmp_path / "rules.toml"
     file.write_text(

@@ -39,8 +39,8 @@ def road_map(
     survey
         Its corridors, junctions, racks, regions and doors are used.
     vehicle_width
-        Metres; corridors and doors that are narrower are left out. By default corridors under 1.2 m are: no lane in
-        them keeps 0.4 m from what wavers on both sides.
+        Metres; corridors and doors that are narrower are left out. By default a corridor under 1.2 m
+        is where ways are usually more than two and a half times as wide: a gap for people.
     rules
         Speeds and one-way lanes, as `groundplan.roadmap._rules` describes them: a TOML file, or its entries.
     spurs

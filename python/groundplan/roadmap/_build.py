@@ -33,9 +33,9 @@ class _Builder:
 
     def __init__(self, survey: Survey, rules: list[Rule], vehicle_width: float | None) -> None:
         self.survey, self.rules, self.vehicle = survey, rules, vehicle_width or 0.0
-        least = _lanes.NARROWEST_M if vehicle_width is None else vehicle_width
         self.places = places(survey)
         ways = _lanes.ways([p for p in self.places if self._open(p)])
+        least = _lanes.narrowest(ways) if vehicle_width is None else vehicle_width
         self.ways = {corridor: way for corridor, way in ways.items() if way.width >= least}
         self.nodes: list[Node] = []
         self.lanes: list[Lane] = []

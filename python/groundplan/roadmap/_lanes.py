@@ -22,8 +22,9 @@ CROSSING_RAD = math.radians(20)
 #: Crossings of one junction that are nearer to each other than this are one node, metres: what a lane may be off the
 #: centre line, from either side.
 ONE_NODE_M = 0.25
-#: Where a corridor is narrower than this, a lane does not keep 0.4 m from walls that waver, metres.
-NARROWEST_M = 1.2
+#: A gap through a row is for people and not for vehicles: under so many metres, and under such a share of how wide ways
+#: usually are there. Where all ways are narrow, as in an office, none is a gap.
+GAP_M, GAP_SHARE = 1.2, 0.4
 #: A node at a dead end stands so far before the wall, metres.
 BEFORE_WALL_M = 0.6
 
@@ -97,6 +98,17 @@ def ways(places: Sequence[Place]) -> dict[int, Way]:
             p, along = q, (-along[0], -along[1])
         found[place.label] = Way(place, p, along, length, place.width or 0.0)
     return found
+
+
+def narrowest(ways: dict[int, Way]) -> float:
+    """How wide a corridor has to be to have a lane where no vehicle is given, metres."""
+    longest = sum(way.length for way in ways.values())
+    passed = 0.0
+    for way in sorted(ways.values(), key=lambda way: way.width):
+        passed += way.length
+        if passed >= longest / 2:  # half the length of all ways is narrower than this one
+            return min(GAP_M, GAP_SHARE * way.width)
+    return 0.0
 
 
 def stops(survey: Survey, ways: dict[int, Way]) -> list[Stop]:
