@@ -52,7 +52,7 @@ pub fn cover_edges(
         let span = 2 * diagonal.ceil() as usize + 4;
         let mut covered: Vec<Vec<u64>> = vec![Vec::new(); members.len()];
         for ((pixel, &along), &magnitude) in gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes) {
-            if weight(f64::from(along), magnitude, angle, tolerance, true) == 0 {
+            if weight(f64::from(along), magnitude, angle, tolerance) == 0 {
                 continue;
             }
             let (x, y) = (f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);

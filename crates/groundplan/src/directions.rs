@@ -2,6 +2,7 @@
 
 use crate::gradients::Gradients;
 use crate::grid::{Frame, angle_between, tidy, tidy_angle, undirected};
+use crate::oriented::{BINS, Oriented, Sharpness};
 use crate::parameters::Parameters;
 use crate::radiograms::{Selection, metres_per_unit};
 use std::f64::consts::PI;
@@ -19,8 +20,6 @@ pub struct Directions {
     pub explained: f64,
 }
 
-/// Bins of the histogram: a quarter of a degree each.
-const BINS: usize = 720;
 /// The histogram is smoothed by a triangle of this half width, in bins.
 const SMOOTHING: usize = 6;
 /// Candidates lower than this share of the highest bin are not looked at.
@@ -39,8 +38,8 @@ const OTHERS_AMONG_CONTROLS: usize = 4;
 const SECOND: f64 = 0.04;
 /// Directions that are given closer than this are one, radians.
 const CLOSEST: f64 = 1e-6;
-/// Steps of the search for the sharpest radiogram: half range and step, degrees.
-const SEARCH: [(f64, f64); 3] = [(3.0, 0.25), (0.3, 0.05), (0.06, 0.01)];
+/// Steps of the search for the sharpest radiogram: half range and step, degrees. The first is over coarser bins.
+const SEARCH: [(f64, f64); 3] = [(3.0, 0.25), (0.2, 0.05), (0.04, 0.01)];
 /// How often the search moves on, at most.
 const MOST_MOVES: usize = 2;
 /// A line shorter than this many pixels says nothing of a direction.
@@ -54,8 +53,8 @@ const BACKGROUND_PIXELS: usize = 20;
 /// no pixel speaks for two directions; then the next, until what lines up is no longer worth the name.
 #[must_use]
 pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parameters) -> Directions {
-    let mut rest = gradients.clone();
-    let histogram = histogram(gradients);
+    let mut rest = Oriented::new(gradients);
+    let histogram = rest.histogram();
     let given = parameters.directions_angles_deg.as_ref();
     let mut found = match given {
         Some(angles) => measure(frame, &mut rest, angles, parameters),
@@ -104,48 +103,53 @@ impl Candidate {
 }
 
 /// How much lines up along the directions that are given, degrees in the map frame; each once.
-fn measure(frame: &Frame, rest: &mut Gradients, angles: &[f64], parameters: &Parameters) -> Vec<Candidate> {
+fn measure(frame: &Frame, rest: &mut Oriented, angles: &[f64], parameters: &Parameters) -> Vec<Candidate> {
     let mut found: Vec<Candidate> = Vec::new();
     for angle in angles.iter().map(|a| frame.angle_to_grid(a.to_radians())) {
         if found.iter().all(|other| angle_between(other.angle, angle) > CLOSEST) {
-            let metres = take_aligned(frame, rest, angle, parameters);
-            found.push(Candidate { angle, metres, beside: Default::default() });
+            let lines = aligned(frame, rest, angle);
+            take(rest, angle, &lines, parameters);
+            found.push(Candidate { angle, metres: lines.metres, beside: Default::default() });
         }
     }
     found
 }
 
 /// Takes direction after direction out of `rest`.
-fn search(frame: &Frame, rest: &mut Gradients, parameters: &Parameters) -> Vec<Candidate> {
+fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters) -> Vec<Candidate> {
     let separation = parameters.directions_separation_deg.to_radians();
+    // What is less than this share of the strongest is of no use, unless so many directions were asked for.
+    let least = if parameters.directions_count.is_some() { 0.0 } else { parameters.directions_min_weight.min(SECOND) };
+    let mut strongest: f64 = 0.0;
     let mut found: Vec<Candidate> = Vec::new();
     let mut tried: Vec<f64> = Vec::new();
     while tried.len() < MOST_CANDIDATES {
-        let candidates = candidates(&histogram(rest));
+        let candidates = candidates(&rest.histogram());
         let fresh = |angle: &f64| tried.iter().all(|other| angle_between(*other, *angle) >= separation / 2.0);
         let Some(start) = candidates.into_iter().find(fresh) else {
             break;
         };
-        let angle = sharpest(frame, rest, start, parameters);
         tried.push(start);
+        let around = rest.along(start, (ALIGNED_DEG + SEARCH[0].0).to_radians());
+        let most = around.len() as f64 * frame.resolution * std::f64::consts::SQRT_2;
+        if most < least * strongest {
+            continue;
+        }
+        let angle = sharpest(frame, rest, start, parameters);
         if found.iter().all(|other| angle_between(other.angle, angle) >= separation) {
-            let mut beside = CONTROLS_DEG.map(|turn| aligned(frame, rest, angle + turn.to_radians()).0);
-            beside.sort_by(f64::total_cmp);
-            let metres = take_aligned(frame, rest, angle, parameters);
+            let lines = aligned(frame, rest, angle);
+            let metres = lines.metres;
+            let mut beside = [f64::INFINITY; CONTROLS_DEG.len()];
+            if metres >= least * strongest {
+                beside = CONTROLS_DEG.map(|turn| aligned(frame, rest, angle + turn.to_radians()).metres);
+                beside.sort_by(f64::total_cmp);
+            }
+            strongest = strongest.max(metres);
+            take(rest, angle, &lines, parameters);
             found.push(Candidate { angle, metres, beside });
         }
     }
     found
-}
-
-/// Summed magnitudes over the angle on the grid.
-fn histogram(gradients: &Gradients) -> Vec<u64> {
-    let mut bins = vec![0u64; BINS];
-    for (&angle, &magnitude) in gradients.angles.iter().zip(&gradients.magnitudes) {
-        let bin = ((f64::from(angle) / PI + 0.5) * BINS as f64) as usize;
-        bins[bin.min(BINS - 1)] += u64::from(magnitude);
-    }
-    bins
 }
 
 /// The histogram over the angle in the map frame.
@@ -176,18 +180,18 @@ fn candidates(histogram: &[u64]) -> Vec<f64> {
 }
 
 /// The angle near `start` at which the radiogram is sharpest.
-fn sharpest(frame: &Frame, gradients: &Gradients, start: f64, parameters: &Parameters) -> f64 {
+fn sharpest(frame: &Frame, rest: &Oriented, start: f64, parameters: &Parameters) -> f64 {
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
-    let pixels = Selection::along(gradients, start, tolerance, false);
+    let mut sharpness = Sharpness::new(frame, rest, &rest.along(start, tolerance));
     let mut best = start;
-    for (range, step) in SEARCH {
+    for (level, (range, step)) in SEARCH.into_iter().enumerate() {
         let steps = (range / step).round() as i64;
         // A peak of the histogram may lie further off than the range: while the best is at its end, it moves on.
         for _ in 0..MOST_MOVES {
             let centre = best;
             let tried: Vec<(f64, f64)> = (-steps..=steps)
                 .map(|n| centre + (n as f64 * step).to_radians())
-                .map(|angle| (angle, pixels.sharpness(frame, angle)))
+                .map(|angle| (angle, if level == 0 { sharpness.at::<3>(angle) } else { sharpness.at::<7>(angle) }))
                 .collect();
             let top = (0..tried.len()).max_by(|&a, &b| tried[a].1.total_cmp(&tried[b].1)).unwrap_or(0);
             best = tried[top].0;
@@ -206,11 +210,18 @@ fn vertex(left: f64, middle: f64, right: f64) -> f64 {
     if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 }
 }
 
-/// Metres of structure that stand out of the background as lines along `angle`; the first bin of the projection, and
-/// for each bin whether a line lies there.
-fn aligned(frame: &Frame, gradients: &Gradients, angle: f64) -> (f64, i64, Vec<bool>) {
-    let selection = Selection::along(gradients, angle, ALIGNED_DEG.to_radians(), false);
-    let (first, bins) = selection.project(frame, angle);
+/// Structure that lines up along an angle.
+struct Aligned {
+    /// Metres that stand out of the background as lines.
+    metres: f64,
+    /// The first bin of the projection, and for each bin whether a line lies there.
+    first: i64,
+    on_line: Vec<bool>,
+}
+
+fn aligned(frame: &Frame, rest: &Oriented, angle: f64) -> Aligned {
+    let indices = rest.along(angle, ALIGNED_DEG.to_radians());
+    let (first, bins) = Selection::whole(indices.iter().map(|&n| rest.pixel(n))).project(frame, angle);
     let unit = metres_per_unit(frame, angle) / frame.resolution;
     let values: Vec<f64> = bins.iter().map(|&bin| bin as f64 * unit).collect();
     let mut sums = vec![0.0];
@@ -233,18 +244,14 @@ fn aligned(frame: &Frame, gradients: &Gradients, angle: f64) -> (f64, i64, Vec<b
             n += 1;
         }
     }
-    (metres, first, on_line)
+    Aligned { metres, first, on_line }
 }
 
-/// The same, and the pixels on those lines are taken out.
-fn take_aligned(frame: &Frame, gradients: &mut Gradients, angle: f64, parameters: &Parameters) -> f64 {
-    let (metres, first, on_line) = aligned(frame, gradients, angle);
-    let tolerance = parameters.radiograms_tolerance_deg.to_radians();
-    let selection = Selection::along(gradients, angle, tolerance, false);
-    let mut keep = vec![true; gradients.pixels.len()];
-    for (&index, bin) in selection.indices.iter().zip(selection.bins(angle)) {
-        keep[index as usize] = !on_line[(bin - first) as usize];
-    }
-    gradients.retain(&keep);
-    metres
+/// Takes out the pixels on lines.
+fn take(rest: &mut Oriented, angle: f64, lines: &Aligned, parameters: &Parameters) {
+    let indices = rest.along(angle, parameters.radiograms_tolerance_deg.to_radians());
+    let selection = Selection::whole(indices.iter().map(|&n| rest.pixel(n)));
+    let is_on_line = |bin: i64| lines.on_line[(bin - lines.first) as usize];
+    let gone = indices.iter().zip(selection.bins(angle)).filter(|(_, bin)| is_on_line(*bin));
+    rest.remove(gone.map(|(&index, _)| index));
 }

@@ -20,17 +20,6 @@ pub struct Gradients {
     pub magnitudes: Vec<u8>,
 }
 
-impl Gradients {
-    /// Keeps the pixels whose flag is set.
-    pub(crate) fn retain(&mut self, keep: &[bool]) {
-        let flags = || keep.iter().copied();
-        let (mut p, mut a, mut m) = (flags(), flags(), flags());
-        self.pixels.retain(|_| p.next().unwrap_or(false));
-        self.angles.retain(|_| a.next().unwrap_or(false));
-        self.magnitudes.retain(|_| m.next().unwrap_or(false));
-    }
-}
-
 /// Smallest window in which a staircase shows its slope, pixels.
 const MIN_RADIUS: usize = 7;
 /// Largest window, pixels; beyond it only time is lost.

@@ -133,7 +133,10 @@ pub fn undirected(angle: f64) -> f64 {
 /// The angle between two undirected directions, in [0, pi/2].
 #[must_use]
 pub fn angle_between(a: f64, b: f64) -> f64 {
-    undirected(a - b).abs()
+    use std::f64::consts::PI;
+    let between = (a - b).abs();
+    // Almost always both are in [-pi/2, pi/2).
+    if between < PI { between.min(PI - between) } else { undirected(between).abs() }
 }
 
 /// An occupancy grid, borrowed: nothing is copied or converted.

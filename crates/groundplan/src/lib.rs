@@ -35,6 +35,7 @@ pub mod labels;
 pub mod lines;
 pub mod locate;
 pub mod occupancy;
+mod oriented;
 pub mod parameters;
 pub mod radiograms;
 pub mod route;

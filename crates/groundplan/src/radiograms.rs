@@ -28,29 +28,29 @@ const SPECK_SHARE: i64 = 4;
 const BITS: u32 = 20;
 /// Fixed-point bits of the place between two bins.
 const FRACTION_BITS: u32 = 4;
-/// Sharpness is measured with 2^this many bins to the pixel, smoothed twice over so many bins.
-const SHARP_BITS: u32 = 2;
-const SMOOTHING: usize = 7;
 
 /// Which pixels to project, and how much each weighs.
 pub(crate) struct Selection {
     /// Column and row, doubled plus one: the pixel's centre in half pixels.
     centres: Vec<[i64; 2]>,
     weights: Vec<i64>,
-    /// Their places among the gradients.
-    pub indices: Vec<u32>,
 }
 
 impl Selection {
-    /// The pixels that lie along `angle` (on the grid), within `tolerance`; with `specks` those without a direction
-    /// count a little too, as the posts of a rack do.
-    pub fn along(gradients: &Gradients, angle: f64, tolerance: f64, specks: bool) -> Self {
-        let mut chosen = Self { centres: Vec::new(), weights: Vec::new(), indices: Vec::new() };
+    /// Pixels that weigh as much as a pixel can.
+    pub fn whole(pixels: impl Iterator<Item = [u32; 2]>) -> Self {
+        let centres: Vec<[i64; 2]> = pixels.map(|pixel| pixel.map(|p| 2 * i64::from(p) + 1)).collect();
+        Self { weights: vec![UNIT; centres.len()], centres }
+    }
+
+    /// The pixels that lie along `angle` (on the grid), within `tolerance`; those without a direction count a little too,
+    /// as the posts of a rack do.
+    fn along(gradients: &Gradients, angle: f64, tolerance: f64) -> Self {
+        let mut chosen = Self { centres: Vec::new(), weights: Vec::new() };
         let all = gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes);
-        for (index, ((pixel, &along), &magnitude)) in all.enumerate() {
-            let weight = weight(f64::from(along), magnitude, angle, tolerance, specks);
+        for ((pixel, &along), &magnitude) in all {
+            let weight = weight(f64::from(along), magnitude, angle, tolerance);
             if weight > 0 {
-                chosen.indices.push(index as u32);
                 chosen.centres.push(pixel.map(|p| 2 * i64::from(p) + 1));
                 chosen.weights.push(weight);
             }
@@ -60,19 +60,14 @@ impl Selection {
 
     /// Sums of weights over offset, split between the two nearest bins, and the offset of the first bin in pixels.
     pub fn project(&self, frame: &Frame, angle: f64) -> (i64, Vec<i64>) {
-        self.project_fine(frame, angle, 0)
-    }
-
-    /// The same with 2^`fine` bins to the pixel; the offset of the first is in bins.
-    fn project_fine(&self, frame: &Frame, angle: f64, fine: u32) -> (i64, Vec<i64>) {
         let [nx, ny] = normal(angle);
         let (width, height) = (frame.width as i64, frame.height as i64);
-        let corners = [0, nx * width, ny * height, nx * width + ny * height].map(|c| c >> (BITS - fine));
+        let corners = [0, nx * width, ny * height, nx * width + ny * height].map(|c| c >> BITS);
         let first = corners.into_iter().min().unwrap_or(0) - 2;
         let last = corners.into_iter().max().unwrap_or(0) + 2;
         let mut bins = vec![0i64; (last - first + 1) as usize];
-        // Half pixels times 2^BITS to fractions of a bin, rounded; bins sit at whole pixels and between.
-        let shift = BITS + 1 - fine - FRACTION_BITS;
+        // Half pixels times 2^BITS to fractions of a bin, rounded; bins sit at whole pixels.
+        let shift = BITS + 1 - FRACTION_BITS;
         let half = 1 << (shift - 1);
         for ([x, y], weight) in self.centres.iter().zip(&self.weights) {
             let place = (nx * x + ny * y + half) >> shift;
@@ -89,26 +84,6 @@ impl Selection {
         let [nx, ny] = normal(angle);
         self.centres.iter().map(move |[x, y]| (nx * x + ny * y + (1 << BITS)) >> (BITS + 1))
     }
-
-    /// Sum of squares of the projection: it is greatest where walls fall on single bins. The projection is finer than
-    /// a pixel and smoothed over one, so that it does not matter where between the bins a wall falls: else an angle
-    /// slightly off, at which the walls happen to fall upon bins, would look sharper than the right one.
-    pub fn sharpness(&self, frame: &Frame, angle: f64) -> f64 {
-        let (_, bins) = self.project_fine(frame, angle, SHARP_BITS);
-        smooth(&smooth(&bins)).into_iter().map(|value| (value as f64).powi(2)).sum()
-    }
-}
-
-/// Sums over [`SMOOTHING`] neighbouring bins; the ends where fewer are left are not missed, nothing lies there.
-fn smooth(bins: &[i64]) -> Vec<i64> {
-    let mut sum = 0;
-    (0..bins.len() + SMOOTHING - 1)
-        .map(|n| {
-            sum += bins.get(n).unwrap_or(&0);
-            sum -= n.checked_sub(SMOOTHING).map_or(0, |gone| bins[gone]);
-            sum
-        })
-        .collect()
 }
 
 /// Normal of a direction in fixed point.
@@ -117,15 +92,17 @@ fn normal(angle: f64) -> [i64; 2] {
     [(-libm::sin(angle) * scale).round() as i64, (libm::cos(angle) * scale).round() as i64]
 }
 
-/// A pixel's weight along `angle`, from 0 to [`UNIT`].
-pub(crate) fn weight(along: f64, magnitude: u8, angle: f64, tolerance: f64, specks: bool) -> i64 {
-    let magnitude = i64::from(magnitude);
-    if angle_between(along, angle) <= tolerance && (specks || magnitude >= SPECK_MAGNITUDE / 2) {
+/// True when a pixel of this magnitude has a direction of its own, by which alone it is judged.
+pub(crate) fn has_direction(magnitude: u8) -> bool {
+    i64::from(magnitude) >= SPECK_MAGNITUDE / 2
+}
+
+/// A pixel's weight along `angle`, from 0 to [`UNIT`]; one without a direction has a little along every one.
+pub(crate) fn weight(along: f64, magnitude: u8, angle: f64, tolerance: f64) -> i64 {
+    if angle_between(along, angle) <= tolerance {
         UNIT
-    } else if specks {
-        UNIT * (SPECK_MAGNITUDE - magnitude).max(0) / (SPECK_MAGNITUDE * SPECK_SHARE)
     } else {
-        0
+        UNIT * (SPECK_MAGNITUDE - i64::from(magnitude)).max(0) / (SPECK_MAGNITUDE * SPECK_SHARE)
     }
 }
 
@@ -146,7 +123,7 @@ pub fn find_radiograms(
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
     let project = |(direction, &angle): (usize, &f64)| {
         let angle = frame.angle_to_grid(angle);
-        let (first, bins) = Selection::along(gradients, angle, tolerance, true).project(frame, angle);
+        let (first, bins) = Selection::along(gradients, angle, tolerance).project(frame, angle);
         let unit = metres_per_unit(frame, angle);
         // Turning by pi flips the normal, so the map frame's offsets may run the other way.
         let ends = [first, first + bins.len() as i64 - 1].map(|bin| frame.offset_to_map(angle, bin as f64));

@@ -140,7 +140,7 @@ impl Turned {
         let on_grid = frame.angle_to_grid(self.angle);
         let gradients = evidence.gradients;
         for ((pixel, &along), &magnitude) in gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes) {
-            if weight(f64::from(along), magnitude, on_grid, tolerance, true) == 0 {
+            if weight(f64::from(along), magnitude, on_grid, tolerance) == 0 {
                 continue;
             }
             let [u, v] = self.place(frame.to_metres(pixel.map(|p| f64::from(p) + 0.5)));
