@@ -246,7 +246,7 @@ mod _core {
                 parameters: &parameters,
                 threads,
             };
-            let made = labels::find_labels(&evidence);
+            let made = labels::find_labels(&evidence, None);
             let confidence = labels::find_confidence(&evidence, &made);
             (made, confidence)
         })?;

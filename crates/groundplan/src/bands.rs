@@ -19,6 +19,18 @@ pub fn map_each<T: Send>(count: usize, threads: usize, make: impl Fn(usize) -> T
     made.into_iter().map(|(_, t)| t).collect()
 }
 
+/// What two things make, side by side where threads were asked for.
+pub fn both<A: Send, B>(threads: usize, one: impl FnOnce() -> A + Send, other: impl FnOnce() -> B) -> (A, B) {
+    if threads <= 1 {
+        return (one(), other());
+    }
+    std::thread::scope(|scope| {
+        let handle = scope.spawn(one);
+        let other = other();
+        (handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), other)
+    })
+}
+
 fn band(n: usize, rows: usize) -> Range<usize> {
     n * BAND_ROWS..((n + 1) * BAND_ROWS).min(rows)
 }

@@ -26,7 +26,9 @@ impl Oriented {
     pub fn new(gradients: &Gradients) -> Self {
         let bins: Vec<u16> = gradients.angles.iter().map(|&angle| bin(angle) as u16).collect();
         let mut starts = vec![0usize; BINS + 1];
-        bins.iter().for_each(|&bin| starts[usize::from(bin) + 1] += 1);
+        for &bin in &bins {
+            starts[usize::from(bin) + 1] += 1;
+        }
         for n in 1..starts.len() {
             starts[n] += starts[n - 1];
         }
@@ -141,7 +143,7 @@ impl Sharpness {
         let mut places = [0i32; CHUNK];
         for (xs, ys) in self.xs.chunks(CHUNK).zip(self.ys.chunks(CHUNK)) {
             for ((place, x), y) in places.iter_mut().zip(xs).zip(ys) {
-                *place = ((x * nx + y * ny - low) * FRACTIONS as f32) as i32;
+                *place = ((x * nx + y * ny - low) * FRACTIONS as f32 + 0.5) as i32;
             }
             // Each between the two nearest bins.
             for &place in &places[..xs.len()] {

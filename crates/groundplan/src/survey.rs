@@ -2,13 +2,14 @@
 
 use crate::adjacency::{Adjacency, find_adjacency};
 use crate::arrangement::{Arrangement, arrange};
+use crate::bands::both;
 use crate::directions::{Directions, find_directions};
 use crate::gradients::{Gradients, find_gradients};
 use crate::grid::Grid;
-use crate::labels::{Evidence, Label, Pattern, find_confidence, find_labels, find_patterns};
+use crate::labels::{Evidence, Ground, Label, Pattern, find_confidence, find_labels, find_patterns};
 use crate::lines::{Lines, find_lines};
 use crate::occupancy::{Occupancy, find_occupancy};
-use crate::parameters::Parameters;
+use crate::parameters::{Method, Parameters};
 use crate::radiograms::{Radiogram, find_radiograms};
 use crate::subdivision::Subdivision;
 use crate::walls::{Walls, find_walls};
@@ -65,6 +66,34 @@ pub struct Given {
 /// Surveys a grid. Total: any grid and parameters give a valid subdivision, at worst one face, and warnings.
 #[must_use]
 pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> Survey {
+    let strips = parameters.labels_method == Method::Strips;
+    let ground = || strips.then(|| Ground::new(grid, threads));
+    // What the labels need of the pixels alone is made meanwhile.
+    let (ground, mut survey) = both(threads, ground, || without_labels(grid, parameters, given, threads));
+    let evidence = Evidence {
+        grid,
+        gradients: &survey.gradients,
+        directions: &survey.directions,
+        lines: &survey.lines,
+        subdivision: &survey.subdivision,
+        occupancy: &survey.occupancy,
+        adjacency: &survey.adjacency,
+        parameters,
+        threads,
+    };
+    let labels = find_labels(&evidence, ground.as_ref());
+    survey.confidence = find_confidence(&evidence, &labels);
+    survey.labels = labels;
+    survey.patterns = find_patterns(&survey.directions, &survey.labels);
+    survey.warnings = find_warnings(&survey, parameters);
+    survey.warnings.extend(undecided(&survey.labels, &survey.confidence));
+    debug_assert_eq!(survey.subdivision.problems(), Vec::<String>::new());
+    debug_assert_eq!(survey.occupancy.pixels.iter().sum::<u64>(), (grid.frame.width * grid.frame.height) as u64);
+    survey
+}
+
+/// The stages up to the adjacency.
+fn without_labels(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> Survey {
     let frame = &grid.frame;
     let gradients = find_gradients(grid, parameters, threads);
     let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters));
@@ -75,24 +104,6 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
     let occupancy = find_occupancy(grid, &arrangement, &directions, &lines, &gradients, parameters, threads);
     let walls = find_walls(&subdivision, &occupancy, parameters);
     let adjacency = find_adjacency(&subdivision, &walls);
-    let evidence = Evidence {
-        grid,
-        gradients: &gradients,
-        directions: &directions,
-        lines: &lines,
-        subdivision: &subdivision,
-        occupancy: &occupancy,
-        adjacency: &adjacency,
-        parameters,
-        threads,
-    };
-    let labels = find_labels(&evidence);
-    let confidence = find_confidence(&evidence, &labels);
-    let patterns = find_patterns(&directions, &labels);
-    let mut warnings = find_warnings(&gradients, &directions, &lines, &labels, parameters);
-    warnings.extend(undecided(&labels, &confidence));
-    debug_assert_eq!(subdivision.problems(), Vec::<String>::new());
-    debug_assert_eq!(occupancy.pixels.iter().sum::<u64>(), (frame.width * frame.height) as u64);
     Survey {
         gradients,
         directions,
@@ -103,10 +114,10 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
         occupancy,
         walls,
         adjacency,
-        labels,
-        confidence,
-        patterns,
-        warnings,
+        labels: Vec::new(),
+        confidence: Vec::new(),
+        patterns: Vec::new(),
+        warnings: Vec::new(),
     }
 }
 
@@ -133,13 +144,8 @@ const LITTLE_EXPLAINED: f64 = 0.12;
 /// Two directions hold at least this much of what lines up, or it is not one ground plan.
 const PAIR_SHARE: f64 = 0.75;
 
-fn find_warnings(
-    gradients: &Gradients,
-    directions: &Directions,
-    lines: &Lines,
-    labels: &[Label],
-    parameters: &Parameters,
-) -> Vec<Warning> {
+fn find_warnings(survey: &Survey, parameters: &Parameters) -> Vec<Warning> {
+    let Survey { gradients, directions, lines, labels, .. } = survey;
     let mut warnings = Vec::new();
     let mut warn = |code, message| warnings.push(Warning { code, message });
     let edges = gradients.pixels.len();

@@ -7,6 +7,7 @@
 
 use super::turned::Turned;
 use super::{Evidence, barriers, ragged};
+use crate::bands::map_each;
 use crate::parameters::Parameters;
 
 /// A strip of free space along one direction, in the direction's own places (metres along and across).
@@ -95,7 +96,7 @@ const ASKEW: f64 = 0.5;
 
 /// Corridors along every direction, in the order of the directions and their places.
 pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
-    let mut strips: Vec<Strip> = views.iter().flat_map(|view| along(evidence, views, view)).collect();
+    let mut strips = map_each(views.len(), evidence.threads, |n| along(evidence, views, &views[n])).concat();
     for view in views {
         let known: Vec<Strip> = strips.iter().filter(|s| s.direction == view.direction).cloned().collect();
         let mut ragged = ragged::find(view, evidence.parameters, &known);

@@ -25,6 +25,7 @@ pub use confidence::find_confidence;
 pub use patterns::{Pattern, PatternKind, find_patterns};
 
 use crate::adjacency::Adjacency;
+use crate::bands::both;
 use crate::directions::Directions;
 use crate::gradients::Gradients;
 use crate::grid::Grid;
@@ -32,6 +33,9 @@ use crate::lines::Lines;
 use crate::occupancy::Occupancy;
 use crate::parameters::{Method, Parameters};
 use crate::subdivision::Subdivision;
+use crate::tiles::Tiles;
+use look::Look;
+use rooms::Space;
 
 /// Kinds of junctions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -195,11 +199,28 @@ pub struct Evidence<'a> {
     pub threads: usize,
 }
 
-/// Finds the labels by the method that the parameters name; corridors first.
+/// What the labels take from the pixels alone, whatever the stages between find: it can be made while they are at work.
+pub struct Ground<'a> {
+    look: Look<'a>,
+    space: Option<Space>,
+}
+
+impl<'a> Ground<'a> {
+    /// The free space of a map, and where the map is all alike.
+    #[must_use]
+    pub fn new(grid: &Grid<'a>, threads: usize) -> Self {
+        let tiles = Tiles::new(grid, threads);
+        let (look, space) = both(threads, || Look::new(grid, &tiles), || Space::new(grid, threads));
+        Self { look, space }
+    }
+}
+
+/// Finds the labels by the method that the parameters name; corridors first. The ground is made where it is not given.
 #[must_use]
-pub fn find_labels(evidence: &Evidence) -> Vec<Label> {
-    match evidence.parameters.labels_method {
-        Method::Strips => strips::find(evidence),
-        Method::Paper => paper::find(evidence),
+pub fn find_labels(evidence: &Evidence, ground: Option<&Ground>) -> Vec<Label> {
+    match (evidence.parameters.labels_method, ground) {
+        (Method::Strips, Some(ground)) => strips::find(evidence, ground),
+        (Method::Strips, None) => strips::find(evidence, &Ground::new(evidence.grid, evidence.threads)),
+        (Method::Paper, _) => paper::find(evidence),
     }
 }

@@ -4,7 +4,6 @@ use super::bays;
 use super::corridors::{self, Strip};
 use super::gates;
 use super::junctions::{self, Meeting};
-use super::look::Look;
 use super::names::{Named, names};
 use super::period::Period;
 use super::pillars;
@@ -12,9 +11,9 @@ use super::places::Squares;
 use super::racks::{self, Row};
 use super::rooms::{self, Racked, Raster};
 use super::turned::Turned;
-use super::{Evidence, JunctionKind, Label, outline};
+use super::{Evidence, Ground, JunctionKind, Label, outline};
+use crate::bands::{both, map_each};
 use crate::grid::{State, tidy};
-use crate::tiles::Tiles;
 
 /// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
 const ALONE: (f64, f64) = (2.0, 5.0);
@@ -30,15 +29,21 @@ const RACKS: (usize, f64) = (3, 0.22);
 /// So far round a rack there are no doors, metres.
 const RIM: f64 = 0.4;
 
-pub fn find(evidence: &Evidence) -> Vec<Label> {
-    let look = Look::new(evidence.grid, &Tiles::new(evidence.grid, evidence.threads));
-    let views: Vec<Turned> = (0..evidence.directions.angles.len()).map(|d| Turned::new(evidence, &look, d)).collect();
-    let mut plan = Plan::new(evidence, &views, corridors::find(evidence, &views));
-    let gates = gates::find(&views, &plan.strips, &plan.rows);
-    if !gates.is_empty() {
-        plan.strips.extend(gates);
-        plan = Plan::new(evidence, &views, plan.strips);
-    }
+pub fn find(evidence: &Evidence, ground: &Ground) -> Vec<Label> {
+    let bars = || ground.space.as_ref().map(|space| space.bars(evidence));
+    let (bars, (views, plan)) = both(evidence.threads, bars, || {
+        let count = evidence.directions.angles.len();
+        // Each view shares its own work out among what threads are left.
+        let own = Evidence { threads: evidence.threads / count.max(1), ..*evidence };
+        let views = map_each(count, evidence.threads, |d| Turned::new(&own, &ground.look, d));
+        let mut plan = Plan::new(evidence, &views, corridors::find(evidence, &views));
+        let gates = gates::find(&views, &plan.strips, &plan.rows);
+        if !gates.is_empty() {
+            plan.strips.extend(gates);
+            plan = Plan::new(evidence, &views, plan.strips);
+        }
+        (views, plan)
+    });
     let Plan { strips, meetings, ends, extents, rows } = plan;
 
     // A face is of one junction at most, and of one corridor.
@@ -84,13 +89,13 @@ pub fn find(evidence: &Evidence) -> Vec<Label> {
     labels.extend(junctions);
     let squares = squares(evidence, &views, &strips);
     labels.extend(rack_labels(evidence, &views, &rows, &squares));
-    let Some(raster) = Raster::new(evidence.grid) else { return labels };
+    let (Some(space), Some(bars)) = (&ground.space, bars) else { return labels };
     let corridors = rooms::Corridor::among(&labels);
-    labels.extend(rooms::find(evidence, &raster, labels.len(), &racked, &corridors, &squares));
+    labels.extend(rooms::find(evidence, space, bars, labels.len(), &racked, &corridors, &squares));
     let wider = |[low, high]: [f64; 2]| [low - pillars::RIM, high + pillars::RIM];
     let rack = |row: &Row| rectangle(&views[row.direction], wider(row.along), wider(row.across));
     let racks: Vec<_> = rows.iter().map(rack).collect();
-    labels.extend(pillar_labels(evidence, &raster, &racks, &squares));
+    labels.extend(pillar_labels(evidence, &space.raster, &racks, &squares));
     labels
 }
 

@@ -46,7 +46,7 @@ pub fn find(raster: &Raster, bars: &[Bar], rules: &Rules) -> Cells {
     let lines: Vec<Vec<usize>> = bars.iter().map(|bar| pixels_of(raster, bar)).collect();
     let mut cut = raster.free.clone();
     lines.iter().flatten().for_each(|&pixel| cut[pixel] = false);
-    let pieces = raster.pieces(|pixel| cut[pixel], |_, _| true);
+    let pieces = raster.pieces(|pixel| u32::from(cut[pixel]));
     let stretches = stretches(raster, bars, &lines, &pieces.numbers);
     let mut joining = Joining::new(raster, bars, rules, &stretches, pieces);
     joining.join_open();
@@ -169,20 +169,22 @@ impl<'a> Joining<'a> {
         stretches: &'a [Stretch],
         pieces: super::raster::Pieces,
     ) -> Self {
-        let touches = |&&pixel: &&usize| raster.sides(pixel).iter().any(|&beside| !raster.free[beside]);
-        let count = |list: &Vec<usize>| list.iter().filter(touches).count();
+        let (mut area, mut wall) = (vec![0; pieces.count + 1], vec![0; pieces.count + 1]);
+        for (pixel, &number) in pieces.numbers.iter().enumerate().filter(|(_, number)| **number != 0) {
+            area[number as usize] += 1;
+            wall[number as usize] += usize::from(raster.sides(pixel).iter().any(|&beside| !raster.free[beside]));
+        }
         let least = DOORWAY / raster.resolution.powi(2);
-        let none = std::iter::once(0);
         Self {
             raster,
             bars,
             rules,
             stretches,
-            small: std::iter::once(false).chain(pieces.lists.iter().map(|list| list.len() as f64 <= least)).collect(),
-            area: none.clone().chain(pieces.lists.iter().map(Vec::len)).collect(),
-            wall: none.chain(pieces.lists.iter().map(count)).collect(),
-            sets: Sets::new(pieces.lists.len() + 1),
-            age: vec![0; pieces.lists.len() + 1],
+            small: area.iter().enumerate().map(|(n, &count)| n > 0 && count as f64 <= least).collect(),
+            area,
+            wall,
+            sets: Sets::new(pieces.count + 1),
+            age: vec![0; pieces.count + 1],
             numbers: pieces.numbers,
         }
     }

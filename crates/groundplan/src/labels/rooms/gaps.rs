@@ -70,7 +70,7 @@ pub fn along_lines(evidence: &Evidence, raster: &Raster) -> Vec<Bar> {
             .collect();
         members.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let offsets: Vec<f64> = members.into_iter().map(|(offset, _)| offset).collect();
-        let lined = lined(evidence, angle_on_grid, &offsets);
+        let lined = lined(evidence, raster, angle_on_grid, &offsets);
         for (&offset, lined) in offsets.iter().zip(&lined) {
             let line = Line::new(raster, angle_on_grid, offset);
             line.gaps(lined, evidence.parameters.rooms_max_opening, &mut bars);
@@ -80,7 +80,7 @@ pub fn along_lines(evidence: &Evidence, raster: &Raster) -> Vec<Bar> {
 }
 
 /// For each line, the steps along it where edge pixels lie along it, ascending.
-fn lined(evidence: &Evidence, angle: f64, offsets: &[f64]) -> Vec<Vec<i64>> {
+fn lined(evidence: &Evidence, raster: &Raster, angle: f64, offsets: &[f64]) -> Vec<Vec<i64>> {
     let (cos, sin) = (libm::cos(angle), libm::sin(angle));
     let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
     let near = (ON_LINE.0 / evidence.grid.frame.resolution).max(ON_LINE.1);
@@ -93,7 +93,7 @@ fn lined(evidence: &Evidence, angle: f64, offsets: &[f64]) -> Vec<Vec<i64>> {
         let (u, v) = (x * cos + y * sin, y * cos - x * sin);
         let first = offsets.partition_point(|&offset| offset < v - near);
         for (line, _) in offsets.iter().enumerate().skip(first).take_while(|(_, offset)| **offset <= v + near) {
-            steps[line].push(u.round() as i64);
+            steps[line].push((u / raster.side as f64).round() as i64);
         }
     }
     for list in &mut steps {

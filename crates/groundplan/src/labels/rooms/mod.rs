@@ -7,6 +7,7 @@
 
 mod cells;
 mod corridors;
+mod fine;
 mod gaps;
 mod narrows;
 mod outlines;
@@ -14,10 +15,11 @@ mod raster;
 
 use super::places::Squares;
 use super::{Evidence, Label, Purpose, outline};
-use crate::grid::{State, tidy};
+use crate::grid::{Grid, State, tidy};
 use crate::subdivision::distance;
 use cells::Rules;
 pub use corridors::Corridor;
+use fine::Fine;
 use gaps::Bar;
 pub use raster::Raster;
 
@@ -40,16 +42,18 @@ const SAME: f64 = 0.75;
 const TOGETHER: f64 = 0.35;
 /// Of a region's extent so much at each end does not count, and it is measured by about so many pixels.
 const STICKS_OUT: f64 = 0.03;
-const SAMPLES: usize = 20_000;
+const SAMPLES: usize = 2_000;
 /// What lies for the most part within a rack, by so many looks, is a gap between its goods.
 const LOOKS: usize = 200;
 
 /// A region while its label is made.
 struct Region {
     number: u32,
-    pixels: Vec<usize>,
+    pixels: usize,
     /// The pixel farthest from all walls.
     at: usize,
+    /// Sum of all pixels' distances to the nearest wall.
+    distances: f64,
     /// Its middle in the squares that give names.
     place: [f64; 2],
 }
@@ -98,18 +102,48 @@ pub struct Racked {
     pub grounds: Vec<Vec<[f64; 2]>>,
 }
 
+/// The free space of a map.
+pub struct Space {
+    pub raster: Raster,
+    /// Of each pixel of the raster.
+    clearance: Vec<u32>,
+    narrows: Vec<Bar>,
+}
+
+impl Space {
+    /// Nothing when nothing is free.
+    pub fn new(grid: &Grid, threads: usize) -> Option<Self> {
+        let raster = Raster::new(grid, threads)?;
+        let clearance = raster.clearance(threads);
+        let mut narrows = narrows::find(&raster, &clearance);
+        narrows.retain(|narrow| !narrow.is_at_solid(&raster));
+        Some(Self { raster, clearance, narrows })
+    }
+
+    /// Everything that may be a door: gaps in walls, and narrows where there is no such gap.
+    pub fn bars(&self, evidence: &Evidence) -> Vec<Bar> {
+        let mut bars = gaps::along_lines(evidence, &self.raster);
+        bars.retain(|bar| !bar.is_at_solid(&self.raster));
+        let together = self.raster.pixels(TOGETHER);
+        let fresh = |narrow: &&Bar| !bars.iter().any(|gap| gap.is_near(narrow, together));
+        let narrows: Vec<Bar> = self.narrows.iter().filter(fresh).copied().collect();
+        bars.extend(narrows);
+        bars
+    }
+}
+
 /// Regions, then the doors between them; `first` is the id of the first of these labels. What runs across one of the
 /// corridors is no door.
 pub fn find(
     evidence: &Evidence,
-    raster: &Raster,
+    space: &Space,
+    mut bars: Vec<Bar>,
     first: usize,
     racked: &Racked,
     corridors: &[Corridor],
     squares: &Squares,
 ) -> Vec<Label> {
-    let clearance = raster.clearance();
-    let mut bars = bars(evidence, raster, &clearance);
+    let Space { raster, clearance, .. } = space;
     bars.retain(|bar| {
         let ends = bar.ends.map(|end| evidence.grid.frame.to_metres(raster.to_grid(end)));
         let middle = [0, 1].map(|axis| f64::midpoint(ends[0][axis], ends[1][axis]));
@@ -119,28 +153,33 @@ pub fn find(
     let parameters = evidence.parameters;
     let rules = Rules { openness: parameters.rooms_openness, least_area: parameters.rooms_min_area };
     let mut cells = cells::find(raster, &bars, &rules);
-    let mut regions = regions(evidence, raster, &clearance, &mut cells.regions, racked, squares);
+    let mut regions = regions(evidence, raster, clearance, &mut cells.regions, racked, squares);
     sort_by_rows(&mut regions);
     let mut order = vec![0; regions.len() + 1];
     for (n, region) in regions.iter().enumerate() {
         order[region.number as usize] = n;
     }
     let doorways = doorways(raster, &cells.regions, cells.openings);
-    let faces = faces(evidence, raster, &cells.regions, regions.len());
-    let places: Vec<_> = regions.iter().map(|region| (region.place, region.pixels.len() as f64)).collect();
+    let fine = Fine::new(evidence.grid, raster, cells.regions, regions.len());
+    let faces = faces(evidence, &fine, regions.len());
+    let mut outlines = outlines::find(&fine, regions.len());
+    let square = evidence.grid.frame.resolution.powi(2);
+    let places: Vec<_> = regions.iter().map(|region| (region.place, region.pixels as f64)).collect();
     let mut labels: Vec<Label> = Vec::new();
     for (region, name) in regions.iter().zip(squares.names("R", &places)) {
+        let number = region.number as usize;
         let doors = doorways.iter().filter(|door| door.between.contains(&region.number)).count();
         let to_map = |place| evidence.grid.frame.to_metres(place).map(tidy);
-        let rings = outlines::rings(raster, &cells.regions, region.number, &region.pixels);
+        let rings = std::mem::take(&mut outlines[number]);
         let mut rings = rings.into_iter().map(|ring| ring.into_iter().map(to_map).collect());
+        let area = tidy(fine.areas[number] as f64 * square);
         labels.push(Label::Region {
-            purpose: purpose(raster, &clearance, region, doors),
-            faces: faces[region.number as usize].clone(),
+            purpose: purpose(raster, region, doors, area),
+            faces: faces[number].clone(),
             polygon: rings.next().unwrap_or_default(),
             holes: rings.collect(),
             at: to_map(raster.to_grid(raster.place(region.at))),
-            area: tidy(area(raster, &region.pixels)),
+            area,
             name,
         });
     }
@@ -165,26 +204,6 @@ pub fn find(
     labels
 }
 
-/// Everything that may be a door: gaps in walls, and narrows where there is no such gap.
-fn bars(evidence: &Evidence, raster: &Raster, clearance: &[u32]) -> Vec<Bar> {
-    let mut bars = gaps::along_lines(evidence, raster);
-
-    bars.retain(|bar| !bar.is_at_solid(raster));
-    let gaps = bars.len();
-    for narrow in narrows::find(raster, clearance) {
-        let known = bars[..gaps].iter().any(|gap| gap.is_near(&narrow, raster.pixels(TOGETHER)));
-        if !known && !narrow.is_at_solid(raster) {
-            bars.push(narrow);
-        }
-    }
-    bars
-}
-
-/// Square metres that were seen free.
-fn area(raster: &Raster, pixels: &[usize]) -> f64 {
-    pixels.iter().filter(|&&pixel| raster.seen[pixel]).count() as f64 * raster.resolution.powi(2)
-}
-
 /// Makes every region one connected piece, leaves out what nobody could stand in, and numbers them from 1.
 fn regions(
     evidence: &Evidence,
@@ -194,63 +213,102 @@ fn regions(
     racked: &Racked,
     squares: &Squares,
 ) -> Vec<Region> {
-    let pieces = raster.pieces(|pixel| numbers[pixel] != 0, |a, b| numbers[a] == numbers[b]);
+    #[derive(Clone, Copy, Default)]
+    struct Piece {
+        region: u32,
+        pixels: usize,
+        seen: usize,
+        widest: u32,
+    }
+    let pieces = raster.pieces(|pixel| numbers[pixel]);
+    let mut all = vec![Piece::default(); pieces.count + 1];
+    for (pixel, &number) in pieces.numbers.iter().enumerate().filter(|(_, number)| **number != 0) {
+        let piece = &mut all[number as usize];
+        piece.region = numbers[pixel];
+        piece.pixels += 1;
+        piece.seen += usize::from(raster.seen[pixel]);
+        piece.widest = piece.widest.max(clearance[pixel]);
+    }
     let mut largest = std::collections::BTreeMap::new();
-    for (n, list) in pieces.lists.iter().enumerate() {
-        let best = largest.entry(numbers[list[0]]).or_insert(n);
-        if list.len() > pieces.lists[*best].len() {
+    for (n, piece) in all.iter().enumerate().skip(1) {
+        let best = largest.entry(piece.region).or_insert(n);
+        if piece.pixels > all[*best].pixels {
             *best = n;
         }
     }
     let radius = raster.pixels(ALONE.1);
-    let within_rack = |list: &Vec<usize>| {
-        let looks = list.iter().step_by(list.len().div_ceil(LOOKS));
-        let on_rack = |&&pixel: &&usize| {
-            let at = evidence.grid.frame.to_metres(raster.to_grid(raster.place(pixel)));
+    let looks = if racked.grounds.is_empty() {
+        Vec::new()
+    } else {
+        samples(&pieces.numbers, &all.iter().map(|piece| piece.pixels).collect::<Vec<_>>(), LOOKS)
+    };
+    let within_rack = |n: usize| {
+        let on_rack = |pixel: &usize| {
+            let at = evidence.grid.frame.to_metres(raster.to_grid(raster.place(*pixel)));
             racked.grounds.iter().any(|ground| outline::holds(ground, at))
         };
-        2 * looks.clone().filter(on_rack).count() > looks.count()
+        looks.get(n).is_some_and(|looks| 2 * looks.iter().filter(|pixel| on_rack(pixel)).count() > looks.len())
     };
-    let stands = |n: usize, list: &Vec<usize>| {
-        let widest = list.iter().map(|&pixel| clearance[pixel]).max().unwrap_or(0);
-        let least = if largest[&numbers[list[0]]] == n { ALONE.0 } else { evidence.parameters.rooms_min_area };
-        area(raster, list) >= least && f64::from(widest) >= radius * radius && !within_rack(list)
-    };
-    let stays: Vec<bool> = pieces.lists.iter().enumerate().map(|(n, list)| stands(n, list)).collect();
-    let mut next = 0;
-    for (list, stays) in pieces.lists.iter().zip(stays) {
-        next += u32::from(stays);
-        for &pixel in list {
-            numbers[pixel] = if stays { next } else { 0 };
-        }
+    let mut count = 0;
+    let names: Vec<u32> = (0..all.len())
+        .map(|n| {
+            let piece = all[n];
+            let least =
+                if largest.get(&piece.region) == Some(&n) { ALONE.0 } else { evidence.parameters.rooms_min_area };
+            let area = piece.seen as f64 * raster.resolution.powi(2);
+            let stands = n > 0 && area >= least && f64::from(piece.widest) >= radius * radius && !within_rack(n);
+            count += u32::from(stands);
+            if stands { count } else { 0 }
+        })
+        .collect();
+    for (number, &piece) in numbers.iter_mut().zip(&pieces.numbers) {
+        *number = names[piece as usize];
     }
     cells::fill_cuts(raster, numbers);
-    let mut lists = vec![Vec::new(); next as usize];
+    let mut regions: Vec<Region> =
+        (1..=count).map(|number| Region { number, pixels: 0, at: 0, distances: 0.0, place: [0.0; 2] }).collect();
     for (pixel, &number) in numbers.iter().enumerate().filter(|(_, number)| **number != 0) {
-        lists[number as usize - 1].push(pixel);
+        let region = &mut regions[number as usize - 1];
+        if region.pixels == 0 || clearance[pixel] > clearance[region.at] {
+            region.at = pixel;
+        }
+        region.pixels += 1;
+        region.distances += f64::from(clearance[pixel]).sqrt();
     }
-    let region = |(n, pixels): (usize, Vec<usize>)| {
-        let at = pixels.iter().copied().max_by_key(|&pixel| (clearance[pixel], usize::MAX - pixel)).unwrap_or(0);
-        let place = middle(evidence, raster, &pixels, squares);
-        Region { number: n as u32 + 1, pixels, at, place }
-    };
-    lists.into_iter().enumerate().map(region).collect()
+    let counts: Vec<usize> = std::iter::once(0).chain(regions.iter().map(|region| region.pixels)).collect();
+    for (region, pixels) in regions.iter_mut().zip(samples(numbers, &counts, SAMPLES).into_iter().skip(1)) {
+        region.place = middle(evidence, raster, &pixels, squares);
+    }
+    regions
+}
+
+/// Of the pixels of each number so many at most, evenly spaced; `counts` says how many there are of each.
+fn samples(numbers: &[u32], counts: &[usize], most: usize) -> Vec<Vec<usize>> {
+    let steps: Vec<usize> = counts.iter().map(|count| count.div_ceil(most).max(1)).collect();
+    let mut next = vec![0; counts.len()];
+    let mut samples = vec![Vec::new(); counts.len()];
+    for (pixel, &number) in numbers.iter().enumerate().filter(|(_, number)| **number != 0) {
+        let number = number as usize;
+        if next[number] == 0 {
+            samples[number].push(pixel);
+            next[number] = steps[number];
+        }
+        next[number] -= 1;
+    }
+    samples
 }
 
 /// Where a region's middle lies in the squares: between its ends along and across, without what sticks out. What
 /// stands in a hall moves its mean, but not its ends.
 fn middle(evidence: &Evidence, raster: &Raster, pixels: &[usize], squares: &Squares) -> [f64; 2] {
-    let step = pixels.len().div_ceil(SAMPLES);
-    let places = pixels
-        .iter()
-        .step_by(step)
-        .map(|&pixel| squares.place(evidence.grid.frame.to_metres(raster.to_grid(raster.place(pixel)))));
+    let places =
+        pixels.iter().map(|&pixel| squares.place(evidence.grid.frame.to_metres(raster.to_grid(raster.place(pixel)))));
     let places: Vec<[f64; 2]> = places.collect();
     let ends = (STICKS_OUT * places.len() as f64) as usize;
     [0, 1].map(|axis| {
         let mut values: Vec<f64> = places.iter().map(|place| place[axis]).collect();
-        values.sort_by(f64::total_cmp);
-        f64::midpoint(values[ends], values[values.len() - 1 - ends])
+        let mut ranked = |rank: usize| *values.select_nth_unstable_by(rank, f64::total_cmp).1;
+        f64::midpoint(ranked(ends), ranked(places.len() - 1 - ends))
     })
 }
 
@@ -291,27 +349,25 @@ fn doorways(raster: &Raster, numbers: &[u32], openings: Vec<[[f64; 2]; 2]>) -> V
 }
 
 /// The free faces whose centres lie in each region, by its number.
-fn faces(evidence: &Evidence, raster: &Raster, numbers: &[u32], count: usize) -> Vec<Vec<u32>> {
+fn faces(evidence: &Evidence, fine: &Fine, count: usize) -> Vec<Vec<u32>> {
     let mut faces = vec![Vec::new(); count + 1];
     for (face, &centre) in evidence.subdivision.centres.iter().enumerate() {
-        let place = raster.of_grid(evidence.grid.frame.to_pixels(centre));
-        if let Some(pixel) = raster.at(place)
-            && evidence.occupancy.states[face] == State::Free
-        {
-            faces[numbers[pixel] as usize].push(face as u32);
+        if evidence.occupancy.states[face] == State::Free {
+            faces[fine.at(evidence.grid.frame.to_pixels(centre)) as usize].push(face as u32);
         }
     }
     faces
 }
 
-/// By its shape and its doors. The mean distance to the walls of a long strip is a quarter of its width.
-fn purpose(raster: &Raster, clearance: &[u32], region: &Region, doors: usize) -> Purpose {
-    let all: f64 = region.pixels.iter().map(|&pixel| f64::from(clearance[pixel]).sqrt()).sum();
-    let width = 4.0 * all / region.pixels.len() as f64;
-    let length = region.pixels.len() as f64 / width;
-    if length >= LONG * width && doors >= 2 && doors as f64 * raster.pixels(DOOR_EVERY) >= length {
+/// By its shape, its doors and its square metres.
+fn purpose(raster: &Raster, region: &Region, doors: usize, area: f64) -> Purpose {
+    // The mean distance to the walls of a long strip is a quarter of its width.
+    let width = 4.0 * region.distances / region.pixels as f64;
+    let length = region.pixels as f64 / width;
+    let is_long = length >= LONG * width && doors as f64 * raster.pixels(DOOR_EVERY) >= length;
+    if doors >= 2 && is_long {
         Purpose::Corridor
-    } else if area(raster, &region.pixels) >= HALL {
+    } else if area >= HALL {
         Purpose::Hall
     } else {
         Purpose::Room

@@ -42,9 +42,10 @@ fn basins(raster: &Raster, clearance: &[u32]) -> Vec<u32> {
     let mut tops = vec![0u32];
     let mut basins = vec![0u32; raster.free.len()];
     for pixel in by_clearance(raster, clearance) {
+        let pixel = pixel as usize;
         let mut here = 0;
         for beside in raster.around(pixel) {
-            if basins[beside] == 0 {
+            if basins[beside] == 0 || basins[beside] == here {
                 continue;
             }
             let other = sets.of(basins[beside]);
@@ -72,18 +73,18 @@ fn basins(raster: &Raster, clearance: &[u32]) -> Vec<u32> {
 }
 
 /// Free pixels from the widest place to the tightest (a counting sort).
-fn by_clearance(raster: &Raster, clearance: &[u32]) -> Vec<usize> {
+fn by_clearance(raster: &Raster, clearance: &[u32]) -> Vec<u32> {
     let top = clearance.iter().copied().max().unwrap_or(0) as usize;
     let mut starts = vec![0usize; top + 2];
-    let free = || (0..clearance.len()).filter(|&pixel| raster.free[pixel]);
-    free().for_each(|pixel| starts[top - clearance[pixel] as usize + 1] += 1);
+    let free = || raster.free.iter().zip(clearance).enumerate().filter(|(_, (free, _))| **free);
+    free().for_each(|(_, (_, &squared))| starts[top - squared as usize + 1] += 1);
     for n in 1..starts.len() {
         starts[n] += starts[n - 1];
     }
     let mut order = vec![0; starts[top + 1]];
-    for pixel in free() {
-        let start = &mut starts[top - clearance[pixel] as usize];
-        order[*start] = pixel;
+    for (pixel, (_, &squared)) in free() {
+        let start = &mut starts[top - squared as usize];
+        order[*start] = pixel as u32;
         *start += 1;
     }
     order

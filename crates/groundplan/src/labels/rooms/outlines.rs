@@ -1,7 +1,7 @@
 //! Outlines of regions: along the borders of their pixels, the same on both sides of a border, and simplified by less
 //! than what lies between two borders, so that no two outlines cross.
 
-use super::raster::Raster;
+use super::fine::Fine;
 use crate::labels::outline::area;
 
 /// A point of an outline, in half pixels of the raster.
@@ -11,28 +11,34 @@ type Point = [i64; 2];
 /// The middles of the sides of pixels that two borders run along are 0.7 pixels apart at least.
 const TOLERANCE: (i128, i128) = (49, 100);
 
-/// The rings around a region, in the grid's pixels: the outer one first, counter-clockwise, then its holes.
-pub fn rings(raster: &Raster, regions: &[u32], region: u32, pixels: &[usize]) -> Vec<Vec<[f64; 2]>> {
-    let tracer = Tracer { raster, regions, region };
-    let mut seen: std::collections::BTreeSet<(usize, u8)> = std::collections::BTreeSet::new();
-    let mut rings: Vec<Vec<[f64; 2]>> = Vec::new();
-    for &pixel in pixels {
-        for side in 0..4 {
-            if tracer.is_border((pixel, side)) && !seen.contains(&(pixel, side)) {
-                let ring = tracer.trace((pixel, side), &mut seen);
-                let ring: Vec<[f64; 2]> = simplify(&ring)
-                    .into_iter()
-                    .map(|[x, y]| raster.to_grid([x as f64 / 2.0, y as f64 / 2.0]))
-                    .collect();
+/// Rings in the grid's pixels.
+type Rings = Vec<Vec<[f64; 2]>>;
+
+/// The rings around each region by its number, the outer one first, counter-clockwise, then its holes.
+pub fn find(fine: &Fine, count: usize) -> Vec<Rings> {
+    let width = fine.width;
+    let mut rings: Vec<Rings> = vec![Vec::new(); count + 1];
+    // Every ring has a pixel whose lower side is on it.
+    let mut seen = vec![false; fine.numbers.len()];
+    for y in 1..fine.height {
+        let (below, row) = fine.numbers[(y - 1) * width..(y + 1) * width].split_at(width);
+        for x in (0..width).filter(|&x| row[x] != below[x] && row[x] != 0) {
+            let pixel = y * width + x;
+            if !seen[pixel] {
+                let ring = Tracer { fine, region: row[x] }.trace((pixel, 0), &mut seen);
+                let ring: Vec<[f64; 2]> =
+                    simplify(&ring).into_iter().map(|[x, y]| fine.to_grid([x as f64 / 2.0, y as f64 / 2.0])).collect();
                 if ring.len() >= 3 {
-                    rings.push(ring);
+                    rings[row[x] as usize].push(ring);
                 }
             }
         }
     }
-    let outer = (0..rings.len()).max_by(|&a, &b| area(&rings[a]).total_cmp(&area(&rings[b])).then(b.cmp(&a)));
-    if let Some(outer) = outer {
-        rings.swap(0, outer);
+    for rings in &mut rings {
+        let outer = (0..rings.len()).max_by(|&a, &b| area(&rings[a]).total_cmp(&area(&rings[b])).then(b.cmp(&a)));
+        if let Some(outer) = outer {
+            rings.swap(0, outer);
+        }
     }
     rings
 }
@@ -40,8 +46,7 @@ pub fn rings(raster: &Raster, regions: &[u32], region: u32, pixels: &[usize]) ->
 /// One region's border. A side of a pixel is (pixel, side), sides counted from below, counter-clockwise; it runs with
 /// the pixel on its left.
 struct Tracer<'a> {
-    raster: &'a Raster,
-    regions: &'a [u32],
+    fine: &'a Fine,
     region: u32,
 }
 
@@ -51,20 +56,16 @@ type Node = (Point, bool);
 impl Tracer<'_> {
     fn beside(&self, pixel: usize, side: u8) -> usize {
         match side {
-            0 => pixel - self.raster.width,
+            0 => pixel - self.fine.width,
             1 => pixel + 1,
-            2 => pixel + self.raster.width,
+            2 => pixel + self.fine.width,
             _ => pixel - 1,
         }
     }
 
-    fn is_border(&self, (pixel, side): (usize, u8)) -> bool {
-        self.regions[self.beside(pixel, side)] != self.region
-    }
-
     /// The middle of a side, and the point where it ends.
     fn points(&self, (pixel, side): (usize, u8)) -> [Point; 2] {
-        let (x, y) = (2 * (pixel % self.raster.width) as i64, 2 * (pixel / self.raster.width) as i64);
+        let (x, y) = (2 * (pixel % self.fine.width) as i64, 2 * (pixel / self.fine.width) as i64);
         match side {
             0 => [[x, y - 1], [x + 1, y - 1]],
             1 => [[x + 1, y], [x + 1, y + 1]],
@@ -73,11 +74,11 @@ impl Tracer<'_> {
         }
     }
 
-    fn trace(&self, start: (usize, u8), seen: &mut std::collections::BTreeSet<(usize, u8)>) -> Vec<Node> {
+    fn trace(&self, start: (usize, u8), seen: &mut [bool]) -> Vec<Node> {
         let mut ring = Vec::new();
         let mut at = start;
         loop {
-            seen.insert(at);
+            seen[at.0] |= at.1 == 0;
             let [middle, end] = self.points(at);
             ring.push((middle, false));
             let (pixel, side) = at;
@@ -86,7 +87,7 @@ impl Tracer<'_> {
             let left = self.beside(pixel, turn);
             let out = self.beside(pixel, side);
             let right = self.beside(out, turn);
-            let [l, o, r] = [left, out, right].map(|p| self.regions[p]);
+            let [l, o, r] = [left, out, right].map(|p| self.fine.numbers[p]);
             let here = self.region;
             let (straight, turn_left, turn_right) = ((left, side), (pixel, turn), (right, (side + 3) % 4));
             let (next, is_node) = match (l == here, r == here) {

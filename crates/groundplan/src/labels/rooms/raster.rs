@@ -1,5 +1,6 @@
 //! The free space as a raster with a border of its own, and whole-number passes over it.
 
+use crate::bands::map_bands;
 use crate::grid::{Grid, State};
 
 /// The part of the map that holds free space, with one pixel of not-free around it, so that no pass asks for borders.
@@ -7,8 +8,10 @@ use crate::grid::{Grid, State};
 pub struct Raster {
     pub width: usize,
     pub height: usize,
-    /// Column and row of the map that pixel (0, 0) stands for; -1 where the free space begins at the map's border.
+    /// Column and row of the map at the lower left corner of pixel (0, 0); before the map's where it begins free.
     corner: [f64; 2],
+    /// Pixels of the map along the side of one of the raster's.
+    pub side: usize,
     /// Metres.
     pub resolution: f64,
     /// Seen free.
@@ -29,6 +32,9 @@ pub struct Island {
     pub thickness: f64,
 }
 
+/// The raster's pixels are as large as this, metres, or smaller, and hold so many of the map's along a side at most.
+const SIDE: f64 = 0.05;
+const MOST_PIXELS: f64 = 8.0;
 /// What stands by itself in free space and is no longer than this, metres, is a chair's or a table's leg, no wall.
 const LEG: f64 = 0.8;
 /// The same for what is not slim: bins, pillars; a wall is less thick than this share of its length.
@@ -41,34 +47,45 @@ const FILLED: f64 = 0.97;
 
 impl Raster {
     /// Nothing when there is no free space.
-    pub fn new(grid: &Grid) -> Option<Self> {
-        let (w, h) = (grid.frame.width, grid.frame.height);
-        let free = |pixel: &u8| grid.table.states[usize::from(*pixel)] == State::Free;
+    pub fn new(grid: &Grid, threads: usize) -> Option<Self> {
+        let resolution = grid.frame.resolution;
+        let side = (SIDE / resolution + 1e-9).floor().clamp(1.0, MOST_PIXELS) as usize;
+        let (w, h) = (grid.frame.width / side, grid.frame.height / side);
+        if w == 0 || h == 0 {
+            return None;
+        }
+        let free: Vec<bool> = map_bands(h, threads, |band| {
+            let mut free = vec![true; band.len() * w];
+            for (row, y) in free.chunks_mut(w).zip(band) {
+                for line in y * side..(y + 1) * side {
+                    clear_taken(grid, line, side, row);
+                }
+            }
+            free
+        })
+        .concat();
         let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
-        for y in 0..h {
-            let row = grid.row(y);
-            if let (Some(first), Some(last)) = (row.iter().position(free), row.iter().rposition(free)) {
+        for (y, row) in free.chunks(w).enumerate() {
+            if let (Some(first), Some(last)) = (row.iter().position(|f| *f), row.iter().rposition(|f| *f)) {
                 low = [low[0].min(first), low[1].min(y)];
                 high = [high[0].max(last), y];
             }
         }
-        if low[1] > high[1] || w == 0 {
+        if low[1] > high[1] {
             return None;
         }
         let (width, height) = (high[0] - low[0] + 3, high[1] - low[1] + 3);
         let mut seen = vec![false; width * height];
-        for y in low[1]..=high[1] {
-            let start = (y - low[1] + 1) * width + 1;
-            for (to, from) in seen[start..].iter_mut().zip(&grid.row(y)[low[0]..=high[0]]) {
-                *to = free(from);
-            }
+        for (to, from) in seen[width..].chunks_mut(width).zip(free[low[1] * w..].chunks(w)).take(height - 2) {
+            to[1..width - 1].copy_from_slice(&from[low[0]..=high[0]]);
         }
-        let corner = low.map(|n| n as f64 - 1.0);
+        let corner = low.map(|n| side as f64 * (n as f64 - 1.0));
         let mut made = Self {
             width,
             height,
             corner,
-            resolution: grid.frame.resolution,
+            side,
+            resolution: side as f64 * resolution,
             free: seen.clone(),
             solid: vec![false; seen.len()],
             islands: Vec::new(),
@@ -85,17 +102,19 @@ impl Raster {
 
     /// A place on the raster as a point of the grid, in the grid's pixels.
     pub fn to_grid(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        [x + self.corner[0] + 0.5, y + self.corner[1] + 0.5]
+        let side = self.side as f64;
+        [(x + 0.5) * side + self.corner[0], (y + 0.5) * side + self.corner[1]]
     }
 
     /// The inverse of [`Raster::to_grid`].
     pub fn of_grid(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        [x - self.corner[0] - 0.5, y - self.corner[1] - 0.5]
+        let side = self.side as f64;
+        [(x - self.corner[0]) / side - 0.5, (y - self.corner[1]) / side - 0.5]
     }
 
     /// The pixel that holds a place, nothing outside.
     pub fn at(&self, [x, y]: [f64; 2]) -> Option<usize> {
-        let (x, y) = ((x + 0.5).floor(), (y + 0.5).floor());
+        let (x, y) = (x + 0.5, y + 0.5);
         let inside = x >= 0.0 && y >= 0.0 && (x as usize) < self.width && (y as usize) < self.height;
         inside.then(|| y as usize * self.width + x as usize)
     }
@@ -103,6 +122,17 @@ impl Raster {
     /// The centre of a pixel.
     pub fn place(&self, pixel: usize) -> [f64; 2] {
         [(pixel % self.width) as f64, (pixel / self.width) as f64]
+    }
+
+    /// How many of the map's pixels in a pixel are free.
+    pub fn seen_in(&self, grid: &Grid, pixel: usize) -> usize {
+        let side = self.side;
+        if self.seen[pixel] {
+            return side * side;
+        }
+        let free = |value: &&u8| grid.table.states[usize::from(**value)] == State::Free;
+        let [x, y] = [0, 1].map(|axis| (self.corner[axis] + self.place(pixel)[axis] * side as f64) as usize);
+        (y..y + side).map(|y| grid.row(y)[x..x + side].iter().filter(free).count()).sum()
     }
 
     /// The four pixels that share a side with a pixel that is not on the raster's border.
@@ -121,30 +151,50 @@ impl Raster {
         x == 0 || y == 0 || x + 1 == self.width || y + 1 == self.height
     }
 
-    /// Pieces of pixels that are joined side by side: a number for each pixel (0 for none), and each piece's pixels.
-    pub fn pieces(&self, is_in: impl Fn(usize) -> bool, joined: impl Fn(usize, usize) -> bool) -> Pieces {
+    /// Pieces of pixels of one kind that are joined side by side, for all kinds but 0.
+    pub fn pieces(&self, kind: impl Fn(usize) -> u32) -> Pieces {
+        let width = self.width;
         let mut numbers = vec![0u32; self.free.len()];
-        let mut lists = Vec::new();
-        for start in 0..numbers.len() {
-            if numbers[start] != 0 || self.on_border(start) || !is_in(start) {
-                continue;
-            }
-            let number = lists.len() as u32 + 1;
-            numbers[start] = number;
-            let mut list = vec![start];
-            let mut next = 0;
-            while let Some(&pixel) = list.get(next) {
-                next += 1;
-                for beside in self.sides(pixel) {
-                    if numbers[beside] == 0 && !self.on_border(beside) && is_in(beside) && joined(pixel, beside) {
-                        numbers[beside] = number;
-                        list.push(beside);
-                    }
+        let mut sets = Sets::new(1);
+        // Nothing on the raster's border is of a piece.
+        for y in 1..self.height - 1 {
+            let mut before = 0;
+            for pixel in y * width + 1..(y + 1) * width - 1 {
+                let own = kind(pixel);
+                if own != 0 {
+                    let (left, below) = (numbers[pixel - 1], numbers[pixel - width]);
+                    let below = if below != 0 && kind(pixel - width) == own { below } else { 0 };
+                    let left = if before == own { left } else { 0 };
+                    numbers[pixel] = match (left, below) {
+                        (0, 0) => sets.add(),
+                        (0, one) | (one, 0) => one,
+                        (a, b) if a == b => a,
+                        (a, b) => {
+                            let (a, b) = (sets.of(a), sets.of(b));
+                            sets.join(a.min(b), a.max(b));
+                            a.min(b)
+                        }
+                    };
                 }
+                before = own;
             }
-            lists.push(list);
         }
-        Pieces { numbers, lists }
+        // In the order of their first pixels.
+        let mut names = vec![0u32; sets.0.len()];
+        let mut count = 0;
+        for n in 1..names.len() as u32 {
+            let root = sets.of(n);
+            if root == n {
+                count += 1;
+                names[n as usize] = count;
+            } else {
+                names[n as usize] = names[root as usize];
+            }
+        }
+        for number in &mut numbers {
+            *number = names[*number as usize];
+        }
+        Pieces { numbers, count: count as usize }
     }
 
     /// Looks at what stands by itself in free space: fills what is too small or too stout for a wall (furniture, bins,
@@ -221,54 +271,76 @@ impl Raster {
     }
 
     /// Squared distance of each pixel to the nearest that is not free, in pixels (Meijster, Roerdink and Hesselink 2000).
-    pub fn clearance(&self) -> Vec<u32> {
-        let (w, h) = (self.width, self.height);
-        let mut columns = vec![0i64; w * h];
-        for p in w..w * h {
-            if self.free[p] {
-                columns[p] = columns[p - w] + 1;
+    pub fn clearance(&self, threads: usize) -> Vec<u32> {
+        let w = self.width;
+        // Within each column first.
+        let mut columns = vec![0u32; w * self.height];
+        for y in 1..self.height {
+            let (below, row) = columns[(y - 1) * w..(y + 1) * w].split_at_mut(w);
+            for ((to, below), &free) in row.iter_mut().zip(below).zip(&self.free[y * w..]) {
+                *to = (*below + 1) * u32::from(free);
             }
         }
-        for p in (0..w * (h - 1)).rev() {
-            columns[p] = columns[p].min(columns[p + w] + 1);
+        for y in (1..self.height).rev() {
+            let (row, above) = columns[(y - 1) * w..(y + 1) * w].split_at_mut(w);
+            row.iter_mut().zip(above).for_each(|(to, above)| *to = (*to).min(*above + 1));
         }
-        let mut squared = vec![0u32; w * h];
-        let (mut seats, mut starts) = (Vec::with_capacity(w), Vec::with_capacity(w));
-        for (row, to) in columns.chunks(w).zip(squared.chunks_mut(w)) {
-            let height = |x: i64| row[x as usize] * row[x as usize];
-            let distance = |x: i64, seat: i64| (x - seat) * (x - seat) + height(seat);
-            seats.clear();
-            starts.clear();
-            seats.push(0);
-            starts.push(0);
-            for x in 1..w as i64 {
-                while let (Some(&seat), Some(&start)) = (seats.last(), starts.last()) {
-                    if distance(start, seat) <= distance(start, x) {
-                        let meet = (x * x - seat * seat + height(x) - height(seat)).div_euclid(2 * (x - seat)) + 1;
-                        if meet < w as i64 {
-                            seats.push(x);
-                            starts.push(meet.max(0));
-                        }
-                        break;
-                    }
-                    seats.pop();
-                    starts.pop();
-                }
-                if seats.is_empty() {
-                    seats.push(x);
-                    starts.push(0);
+        map_bands(self.height, threads, |band| {
+            let mut squared = vec![0u32; band.len() * w];
+            let mut seats = Vec::new();
+            for (row, to) in columns[band.start * w..].chunks(w).zip(squared.chunks_mut(w)) {
+                // Within a run of free pixels only the run and its two ends count.
+                let mut next = 1;
+                while let Some(from) = (next..w).find(|&x| row[x] != 0) {
+                    let end = (from..w).find(|&x| row[x] == 0).unwrap_or(w - 1);
+                    envelope(&row[from - 1..=end], &mut to[from - 1..=end], &mut seats);
+                    next = end + 1;
                 }
             }
-            for x in (0..w as i64).rev() {
-                let place = seats.len() - 1;
-                to[x as usize] = distance(x, seats[place]) as u32;
-                if starts[place] == x && place > 0 {
-                    seats.pop();
-                    starts.pop();
+            squared
+        })
+        .concat()
+    }
+}
+
+/// The lower envelope of the parabolas over some heights.
+fn envelope(heights: &[u32], squared: &mut [u32], seats: &mut Vec<(i64, i64)>) {
+    let height = |x: i64| i64::from(heights[x as usize]).pow(2);
+    let distance = |x: i64, seat: i64| (x - seat) * (x - seat) + height(seat);
+    seats.clear();
+    seats.push((0, 0));
+    let count = heights.len() as i64;
+    for x in 1..count {
+        while let Some(&(seat, start)) = seats.last() {
+            if distance(start, seat) <= distance(start, x) {
+                // Exact: the numbers are whole and small.
+                let over = x * x - seat * seat + height(x) - height(seat);
+                let meet = if over < 0 { 0 } else { (over as f64 / (2 * (x - seat)) as f64) as i64 + 1 };
+                if meet < count {
+                    seats.push((x, meet));
                 }
+                break;
             }
+            seats.pop();
         }
-        squared
+        if seats.is_empty() {
+            seats.push((x, 0));
+        }
+    }
+    let mut end = count;
+    while let Some((seat, start)) = seats.pop() {
+        for x in start..end {
+            squared[x as usize] = distance(x, seat) as u32;
+        }
+        end = end.min(start);
+    }
+}
+
+/// Takes out of a row of the raster what is not free in one of the map's rows.
+fn clear_taken(grid: &Grid, y: usize, side: usize, row: &mut [bool]) {
+    let free = grid.table.states.map(|s| s == State::Free);
+    for (to, from) in row.iter_mut().zip(grid.row(y).chunks(side)) {
+        *to &= from.iter().all(|&value| free[usize::from(value)]);
     }
 }
 
@@ -276,8 +348,8 @@ impl Raster {
 pub struct Pieces {
     /// The number of each pixel's piece, from 1; 0 for none.
     pub numbers: Vec<u32>,
-    /// Each piece's pixels.
-    pub lists: Vec<Vec<usize>>,
+    /// How many.
+    pub count: usize,
 }
 
 /// Sets that only ever join (union-find).
