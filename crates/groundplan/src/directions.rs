@@ -39,7 +39,7 @@ const SECOND: f64 = 0.04;
 /// Directions that are given closer than this are one, radians.
 const CLOSEST: f64 = 1e-6;
 /// Steps of the search for the sharpest radiogram: half range and step, degrees. The first is over coarser bins.
-const SEARCH: [(f64, f64); 3] = [(3.0, 0.25), (0.2, 0.05), (0.04, 0.01)];
+const SEARCH: [(f64, f64); 3] = [(3.0, 0.25), (0.3, 0.05), (0.06, 0.01)];
 /// How often the search moves on, at most.
 const MOST_MOVES: usize = 2;
 /// A line shorter than this many pixels says nothing of a direction.

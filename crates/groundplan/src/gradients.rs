@@ -49,6 +49,9 @@ pub fn find_gradients(grid: &Grid, parameters: &Parameters, threads: usize) -> G
     all
 }
 
+/// Pixels that are looked at together.
+const WORD: usize = 8;
+
 /// Columns of the edge pixels of each row of the band.
 fn edge_pixels(grid: &Grid, band: std::ops::Range<usize>) -> Vec<Vec<u32>> {
     let taken = grid.table.states.map(|s| s == State::Occupied);
@@ -60,14 +63,20 @@ fn edge_pixels(grid: &Grid, band: std::ops::Range<usize>) -> Vec<Vec<u32>> {
         let below = grid.row(y.saturating_sub(1));
         let above = grid.row((y + 1).min(height - 1));
         let mut columns = Vec::new();
-        for (x, &value) in row.iter().enumerate() {
-            if taken[usize::from(value)]
-                && !(is_taken(row, x.saturating_sub(1))
-                    && is_taken(row, (x + 1).min(width - 1))
-                    && is_taken(below, x)
-                    && is_taken(above, x))
-            {
-                columns.push(x as u32);
+        for (n, pixels) in row.chunks(WORD).enumerate() {
+            // Eight free or unknown pixels alike are the most of a map.
+            if pixels == [pixels[0]; WORD] && !taken[usize::from(pixels[0])] {
+                continue;
+            }
+            for x in n * WORD..n * WORD + pixels.len() {
+                if is_taken(row, x)
+                    && !(is_taken(row, x.saturating_sub(1))
+                        && is_taken(row, (x + 1).min(width - 1))
+                        && is_taken(below, x)
+                        && is_taken(above, x))
+                {
+                    columns.push(x as u32);
+                }
             }
         }
         columns

@@ -106,6 +106,8 @@ pub(crate) struct Sharpness {
     twice: Vec<f32>,
 }
 
+/// From here on a float holds whole numbers only. More than any map has bins.
+const WHOLE: f32 = 8_388_608.0;
 /// A pixel's weight, in whole parts.
 const FRACTIONS: u32 = 16;
 /// Pixels are projected so many at a time.
@@ -127,9 +129,9 @@ impl Sharpness {
         }
     }
 
-    /// With `WIDTH` bins to 1.75 pixels: 3 or 7.
+    /// Smoothed over `WIDTH` bins, 3 or 7: half as many bins, rounded up, to the pixel, so that pixels in a row fall on bins.
     pub fn at<const WIDTH: usize>(&mut self, angle: f64) -> f64 {
-        let scale = WIDTH as f64 / 1.75;
+        let scale = WIDTH.div_ceil(2) as f64;
         let (nx, ny) = (-libm::sin(angle) * scale, libm::cos(angle) * scale);
         let [width, height] = self.size;
         let corners = [0.0, nx * width, ny * height, nx * width + ny * height];
@@ -140,14 +142,15 @@ impl Sharpness {
         self.bins.clear();
         self.bins.resize(count + 2 * WIDTH, 0);
         let (nx, ny, low) = (nx as f32, ny as f32, (low - WIDTH as f64) as f32);
-        let mut places = [0i32; CHUNK];
+        let mut places = [0u32; CHUNK];
         for (xs, ys) in self.xs.chunks(CHUNK).zip(self.ys.chunks(CHUNK)) {
             for ((place, x), y) in places.iter_mut().zip(xs).zip(ys) {
-                *place = ((x * nx + y * ny - low) * FRACTIONS as f32 + 0.5) as i32;
+                // Rounded: of such a float the last bits are the whole number.
+                *place = ((x * nx + y * ny - low) * FRACTIONS as f32 + WHOLE).to_bits() & (WHOLE as u32 - 1);
             }
             // Each between the two nearest bins.
             for &place in &places[..xs.len()] {
-                let (bin, part) = (place as u32 / FRACTIONS, place as u32 % FRACTIONS);
+                let (bin, part) = (place / FRACTIONS, place % FRACTIONS);
                 self.bins[bin as usize] += FRACTIONS - part;
                 self.bins[bin as usize + 1] += part;
             }

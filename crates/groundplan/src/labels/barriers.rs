@@ -35,13 +35,15 @@ pub fn across(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool>
 pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize> {
     let count = ((across[1] - across[0]) / view.cell).round().max(1.0) as usize;
     let side = ((GETS_THROUGH * count as f64) as usize).max(1);
+    // On the borders of cells: from between them a cell might be none, and none is barred.
+    let first = ((across[0] - view.start[1]) / view.cell).round() * view.cell + view.start[1];
     // For how many columns each place across has been free.
     let mut free_for = vec![side; count];
     let mut reached = vec![true; count];
     let mut found = Vec::new();
     for c in range {
         for (n, columns) in free_for.iter_mut().enumerate() {
-            let v = across[0] + n as f64 * view.cell;
+            let v = first + n as f64 * view.cell;
             *columns = if view.barred(c, v, v + view.cell) == 0.0 { *columns + 1 } else { 0 };
         }
         let free: Vec<bool> = free_for.iter().map(|columns| *columns >= side).collect();

@@ -204,7 +204,7 @@ fn blobs(evidence: &Evidence, raster: &Raster, grounds: &[Vec<[f64; 2]>]) -> Vec
             continue;
         }
         // Something was seen there: it is not what no ray has met.
-        let reach = (island.length / 2.0).ceil() as i64 + 1;
+        let reach = (island.length / 2.0 * raster.side as f64).ceil() as i64 + 1;
         let occupied = (-reach..=reach).any(|dy| {
             let y = grid[1] as i64 + dy;
             (0..frame.height as i64).contains(&y) && {

@@ -267,13 +267,20 @@ fn regions(
     cells::fill_cuts(raster, numbers);
     let mut regions: Vec<Region> =
         (1..=count).map(|number| Region { number, pixels: 0, at: 0, distances: 0.0, place: [0.0; 2] }).collect();
-    for (pixel, &number) in numbers.iter().enumerate().filter(|(_, number)| **number != 0) {
-        let region = &mut regions[number as usize - 1];
-        if region.pixels == 0 || clearance[pixel] > clearance[region.at] {
-            region.at = pixel;
+    let mut start = 0;
+    for run in numbers.chunk_by(|a, b| a == b) {
+        let pixels = start..start + run.len();
+        start = pixels.end;
+        if run[0] != 0 {
+            let region = &mut regions[run[0] as usize - 1];
+            let own = &clearance[pixels.clone()];
+            let widest = own.iter().copied().max().unwrap_or(0);
+            if region.pixels == 0 || widest > clearance[region.at] {
+                region.at = pixels.start + own.iter().position(|&squared| squared == widest).unwrap_or(0);
+            }
+            region.pixels += run.len();
+            region.distances += own.iter().map(|&squared| f64::from(squared).sqrt()).sum::<f64>();
         }
-        region.pixels += 1;
-        region.distances += f64::from(clearance[pixel]).sqrt();
     }
     let counts: Vec<usize> = std::iter::once(0).chain(regions.iter().map(|region| region.pixels)).collect();
     for (region, pixels) in regions.iter_mut().zip(samples(numbers, &counts, SAMPLES).into_iter().skip(1)) {

@@ -54,11 +54,12 @@ impl Raster {
         if w == 0 || h == 0 {
             return None;
         }
+        let is_free = grid.table.states.map(|s| s == State::Free);
         let free: Vec<bool> = map_bands(h, threads, |band| {
             let mut free = vec![true; band.len() * w];
             for (row, y) in free.chunks_mut(w).zip(band) {
                 for line in y * side..(y + 1) * side {
-                    clear_taken(grid, line, side, row);
+                    clear_taken(grid, &is_free, line, side, row);
                 }
             }
             free
@@ -337,8 +338,11 @@ fn envelope(heights: &[u32], squared: &mut [u32], seats: &mut Vec<(i64, i64)>) {
 }
 
 /// Takes out of a row of the raster what is not free in one of the map's rows.
-fn clear_taken(grid: &Grid, y: usize, side: usize, row: &mut [bool]) {
-    let free = grid.table.states.map(|s| s == State::Free);
+fn clear_taken(grid: &Grid, free: &[bool; 256], y: usize, side: usize, row: &mut [bool]) {
+    if side == 1 {
+        row.iter_mut().zip(grid.row(y)).for_each(|(to, &value)| *to = free[usize::from(value)]);
+        return;
+    }
     for (to, from) in row.iter_mut().zip(grid.row(y).chunks(side)) {
         *to &= from.iter().all(|&value| free[usize::from(value)]);
     }
