@@ -9,6 +9,7 @@ use super::turned::Turned;
 use super::{Evidence, barriers, ragged};
 use crate::bands::map_each;
 use crate::parameters::Parameters;
+use std::ops::AddAssign;
 
 /// A strip of free space along one direction, in the direction's own places (metres along and across).
 #[derive(Clone, Debug, PartialEq)]
@@ -96,10 +97,14 @@ const ASKEW: f64 = 0.5;
 
 /// Corridors along every direction, in the order of the directions and their places.
 pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
-    let mut strips = map_each(views.len(), evidence.threads, |n| along(evidence, views, &views[n])).concat();
-    for view in views {
-        let known: Vec<Strip> = strips.iter().filter(|s| s.direction == view.direction).cloned().collect();
-        let mut ragged = ragged::find(view, evidence.parameters, &known);
+    let found = map_each(views.len(), evidence.threads, |n| {
+        let known = along(evidence, views, &views[n]);
+        let ragged = ragged::find(&views[n], evidence.parameters, &known);
+        (known, ragged)
+    });
+    let (known, ragged): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+    let mut strips = known.concat();
+    for mut ragged in ragged {
         ragged.retain(|way| !strips.iter().any(|strip| is_askew_in(views, way, strip)));
         strips.extend(ragged);
     }
@@ -359,29 +364,41 @@ impl Column {
 }
 
 /// All maximal pieces with the greatest sums (Ruzzo and Tompa 1999): from, to.
-pub fn best_pieces(scores: &[f64]) -> Vec<(usize, usize)> {
-    struct Piece {
+pub fn best_pieces<T: Copy + Default + PartialOrd + AddAssign>(scores: &[T]) -> Vec<(usize, usize)> {
+    struct Piece<T> {
         from: usize,
         to: usize,
-        before: f64,
-        after: f64,
+        before: T,
+        after: T,
+        /// The last piece ahead of it that begins at a lower sum.
+        lower: Option<usize>,
     }
-    let mut pieces: Vec<Piece> = Vec::new();
-    let mut sum = 0.0;
-    for (n, &score) in scores.iter().enumerate() {
-        let before = sum;
-        sum += score;
-        if score <= 0.0 {
+    let zero = T::default();
+    let mut pieces: Vec<Piece<T>> = Vec::new();
+    let (mut n, mut sum) = (0, zero);
+    while n < scores.len() {
+        let (from, before) = (n, sum);
+        while n < scores.len() && scores[n] > zero {
+            sum += scores[n];
+            n += 1;
+        }
+        if n == from {
+            sum += scores[n];
+            n += 1;
             continue;
         }
-        let mut piece = Piece { from: n, to: n + 1, before, after: sum };
-        while let Some(place) = pieces.iter().rposition(|other| other.before < piece.before) {
-            if pieces[place].after >= piece.after {
-                break;
+        let mut piece = Piece { from, to: n, before, after: sum, lower: pieces.len().checked_sub(1) };
+        while let Some(place) = piece.lower {
+            let other = &pieces[place];
+            if other.before < piece.before {
+                if other.after >= piece.after {
+                    break;
+                }
+                (piece.from, piece.before, piece.lower) = (other.from, other.before, other.lower);
+                pieces.truncate(place);
+            } else {
+                piece.lower = other.lower;
             }
-            piece.from = pieces[place].from;
-            piece.before = pieces[place].before;
-            pieces.truncate(place);
         }
         pieces.push(piece);
     }

@@ -5,8 +5,9 @@
 
 use super::barriers;
 use super::corridors::{Strip, best_pieces};
-use super::turned::Turned;
+use super::turned::{Shares, Turned};
 use crate::parameters::Parameters;
+use std::ops::Range;
 
 /// Widths are tried in such steps, and places across in such shares of the width.
 const WIDER: f64 = 1.25;
@@ -33,14 +34,14 @@ const LEAST_BOTH: f64 = 0.45;
 const LEAST_SEEN: f64 = 0.3;
 /// A way that shares more than this of its width with a known one is none.
 const SHARED: f64 = 0.25;
-/// What a column says for a way, where one that is clear between two sides says 1: it is narrowed; it has one side; it
-/// has none; something stands in the way.
-const NARROWED: f64 = 0.2;
-const ONE_SIDED: f64 = 0.1;
-const OPEN: f64 = 0.7;
-const BLOCKED: f64 = 2.0;
+/// What a column says for a way, or against it: it is clear between two sides; it is narrowed; it has one side; it has
+/// none; something stands in the way.
+const FULL: i64 = 10;
+const NARROWED: i64 = 2;
+const ONE_SIDED: i64 = 1;
+const OPEN: i64 = 7;
+const BLOCKED: i64 = 20;
 /// No way goes on through what closes it: a column of which so much is not free.
-const CLOSED: f64 = 1e6;
 const IMPASSABLE: f64 = 0.7;
 
 /// The ways along one direction beside those that are known, the best first.
@@ -79,75 +80,120 @@ fn is_beside(one: &Strip, two: &Strip) -> bool {
     together > 0.0 && shared > SHARED * one.width().min(two.width())
 }
 
-/// A strip, column by column.
+/// A strip, asked column by column.
 struct Candidate<'a> {
     view: &'a Turned,
     across: [f64; 2],
-    clear: Vec<bool>,
-    held: [Vec<bool>; 2],
-    scores: Vec<f64>,
+    blocked: Shares<'a>,
+    /// Of blocked cells, the least that count as so much.
+    closed: u32,
+    cluttered: u32,
+    unclear: u32,
+    /// What lies beyond its sides, and how many blocked cells hold there.
+    beyond: [(Shares<'a>, u32); 2],
+}
+
+/// What a column is to a way along the strip.
+#[derive(Clone, Copy)]
+struct Column {
+    clear: bool,
+    held: [bool; 2],
+    score: i64,
 }
 
 impl<'a> Candidate<'a> {
     fn new(view: &'a Turned, across: [f64; 2]) -> Self {
-        let beyond = beyond(across);
-        let held = beyond.map(|[low, high]| view.all_blocked(low, high).into_iter().map(|b| b >= HELD).collect());
-        let blocked = view.all_blocked(across[0], across[1]);
-        let mut made =
-            Self { view, across, clear: blocked.iter().map(|b| *b <= CLEAR).collect(), held, scores: Vec::new() };
-        made.scores = blocked.iter().enumerate().map(|(c, blocked)| made.score(c, *blocked)).collect();
-        made
+        let blocked = view.blocked_in(across[0], across[1]);
+        let beyond = beyond(across).map(|[low, high]| {
+            let side = view.blocked_in(low, high);
+            (side, side.least(|share| share >= HELD))
+        });
+        Self {
+            view,
+            across,
+            blocked,
+            closed: blocked.least(|share| share > IMPASSABLE),
+            cluttered: blocked.least(|share| share > CLUTTERED),
+            unclear: blocked.least(|share| share > CLEAR),
+            beyond,
+        }
     }
 
-    /// What a column says for a way along the strip or against it.
-    fn score(&self, c: usize, blocked: f64) -> f64 {
-        if blocked > IMPASSABLE {
-            return -CLOSED;
+    /// The stretches of so many columns at least none of which is closed or a rival's.
+    fn open(&self, least: usize, rivals: &[Range<usize>]) -> Vec<Range<usize>> {
+        let count = self.view.size[0];
+        let is_closed = |c: &usize| self.blocked.at(*c) >= self.closed || rivals.iter().any(|rival| rival.contains(c));
+        let mut stretches = Vec::new();
+        let mut from = 0;
+        while from + least <= count {
+            // From its far end, so that most columns are never asked.
+            if let Some(closed) = (from..from + least).rev().find(is_closed) {
+                from = closed + 1;
+                continue;
+            }
+            let to = (from + least..count).find(is_closed).unwrap_or(count);
+            stretches.push(from..to);
+            from = to + 1;
         }
-        if blocked > CLUTTERED {
-            return -BLOCKED;
-        }
-        match (self.clear[c], [0, 1].map(|n| self.held[n][c])) {
-            (true, [true, true]) => 1.0,
+        stretches
+    }
+
+    fn column(&self, c: usize) -> Column {
+        let blocked = self.blocked.at(c);
+        let clear = blocked < self.unclear;
+        let held = [0, 1].map(|side| self.beyond[side].0.at(c) >= self.beyond[side].1);
+        let score = match (clear, held) {
+            _ if blocked >= self.cluttered => -BLOCKED,
+            (true, [true, true]) => FULL,
             (false, [true, true]) => NARROWED,
             (_, [false, false]) => -OPEN,
             _ => ONE_SIDED,
-        }
+        };
+        Column { clear, held, score }
     }
 
     /// The ways along it that rivals leave.
     fn ways(&self, rivals: &[&Strip]) -> Vec<Strip> {
         let view = self.view;
         let width = self.across[1] - self.across[0];
-        let least = (SHORTEST.max(LONG * width) / view.cell) as usize;
-        let mut scores = self.scores.clone();
-        for rival in rivals {
-            let [from, to] = rival.along.map(|u| view.column(u));
-            scores[from..=to].fill(-CLOSED);
+        let least = ((SHORTEST.max(LONG * width) / view.cell) as usize).max(1);
+        let rivals: Vec<Range<usize>> =
+            rivals.iter().map(|rival| view.column(rival.along[0])..view.column(rival.along[1]) + 1).collect();
+        let mut ways = Vec::new();
+        for stretch in self.open(least, &rivals) {
+            let columns: Vec<Column> = stretch.clone().map(|c| self.column(c)).collect();
+            let clear = columns.iter().filter(|column| column.clear).count();
+            if (clear as f64) < LEAST_CLEAR * least as f64 {
+                continue;
+            }
+            let scores: Vec<i64> = columns.iter().map(|column| column.score).collect();
+            let pieces = best_pieces(&scores).into_iter().filter(|(from, to)| to - from >= least);
+            ways.extend(pieces.filter(|&(from, to)| self.is_way(&columns[from..to], stretch.start + from)).map(
+                |(from, to)| Strip {
+                    direction: view.direction,
+                    along: [view.along(stretch.start + from), view.along(stretch.start + to)],
+                    across: self.across,
+                    score: scores[from..to].iter().sum::<i64>() as f64 / FULL as f64 * view.cell * width,
+                },
+            ));
         }
-        let strip = |&(from, to): &(usize, usize)| Strip {
-            direction: view.direction,
-            along: [view.along(from), view.along(to)],
-            across: self.across,
-            score: scores[from..to].iter().sum::<f64>() * view.cell * width,
-        };
-        let pieces: Vec<(usize, usize)> =
-            best_pieces(&scores).into_iter().filter(|(from, to)| to - from >= least).collect();
-        pieces.iter().filter(|piece| self.is_way(**piece)).map(strip).collect()
+        ways
     }
 
-    fn is_way(&self, (from, to): (usize, usize)) -> bool {
+    fn is_way(&self, columns: &[Column], first: usize) -> bool {
         let view = self.view;
-        let share = |flags: &[bool]| flags.iter().filter(|flag| **flag).count() as f64 / flags.len() as f64;
-        let seen = |[low, high]: [f64; 2]| {
-            (from..to).filter(|&c| view.occupied(c, low, high) > 0.0).count() as f64 / (to - from) as f64
+        let range = first..first + columns.len();
+        let share = |is: &dyn Fn(&Column) -> bool| {
+            columns.iter().filter(|column| is(column)).count() as f64 / columns.len() as f64
         };
-        let both = (from..to).filter(|&c| self.held[0][c] && self.held[1][c]).count() as f64;
-        share(&self.clear[from..to]) >= LEAST_CLEAR
-            && self.held.iter().all(|held| share(&held[from..to]) >= LEAST_HELD)
-            && both >= LEAST_BOTH * (to - from) as f64
+        let seen = |[low, high]: [f64; 2]| {
+            range.clone().filter(|&c| view.occupied(c, low, high) > 0.0).count() as f64 / columns.len() as f64
+        };
+        share(&|column| column.clear) >= LEAST_CLEAR
+            && [0, 1].iter().all(|&side| share(&|column| column.held[side]) >= LEAST_HELD)
+            && share(&|column| column.held == [true, true]) >= LEAST_BOTH
             && beyond(self.across).into_iter().all(|side| seen(side) >= LEAST_SEEN)
-            && !barriers::across(view, self.across, from..to).contains(&true)
+            && !barriers::across(view, self.across, range.clone()).contains(&true)
     }
 }
 

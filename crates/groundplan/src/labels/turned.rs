@@ -226,6 +226,13 @@ impl Turned {
         self.shares(&self.barred, 1, columns, low, high)
     }
 
+    /// How much of every column is not free between two places across, as it is counted.
+    pub fn blocked_in(&self, low: f64, high: f64) -> Shares<'_> {
+        let (from, to) = self.cells(low, high);
+        let row = |n: usize| &self.blocked[n * self.size[0]..][..self.size[0]];
+        Shares { below: row(from), above: row(to), count: (to - from) as u32 * self.samples.pow(2) }
+    }
+
     fn shares(&self, sums: &[u32], samples: u32, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
         let (from, to) = self.cells(low, high);
         if from == to {
@@ -240,6 +247,33 @@ impl Turned {
     fn cells(&self, low: f64, high: f64) -> (usize, usize) {
         let at = |v: f64| (((v - self.start[1]) / self.cell).round().max(0.0) as usize).min(self.size[1]);
         (at(low), at(high).max(at(low)))
+    }
+}
+
+/// Of how many samples of each column something is true.
+#[derive(Clone, Copy)]
+pub struct Shares<'a> {
+    below: &'a [u32],
+    above: &'a [u32],
+    /// Samples of a column.
+    count: u32,
+}
+
+impl Shares<'_> {
+    /// Of so many samples of a column.
+    pub fn at(self, column: usize) -> u32 {
+        self.above[column] - self.below[column]
+    }
+
+    /// The least number of samples whose share is as much as is asked for. Where there is no sample the share is all.
+    pub fn least(self, is_enough: impl Fn(f64) -> bool) -> u32 {
+        let share = |n: u32| if self.count == 0 { 1.0 } else { f64::from(n) / f64::from(self.count) };
+        let (mut low, mut high) = (0, self.count + 1);
+        while low < high {
+            let middle = low.midpoint(high);
+            if is_enough(share(middle)) { high = middle } else { low = middle + 1 }
+        }
+        low
     }
 }
 
