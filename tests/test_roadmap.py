@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 
 import networkx
+import numpy as np
 import pytest
 import shapely
 from _exports import GOOD, ODD, demo, jones_farms, odd_names
@@ -14,8 +15,8 @@ from zoo import surveyed
 
 import groundplan
 from groundplan import FormatError, ParameterError, simulate
-from groundplan.evaluate import suite
-from groundplan.evaluate._roads import road_scores
+from groundplan.evaluate import Case, suite
+from groundplan.evaluate._roads import read_route, road_scores
 from groundplan.roadmap import RoadMap, road_map
 
 
@@ -50,25 +51,80 @@ def test_a_warehouse_has_a_node_at_each_junction_and_a_lane_between_neighbours()
     assert len(roads.lanes) == 20 and networkx.is_strongly_connected(roads.to_networkx())
 
 
-@pytest.mark.parametrize("case", suite("roadmaps")[:2], ids=lambda case: case.name)
-def test_a_simulated_warehouse_s_aisles_are_joined_as_its_truth_joins_them(case: object) -> None:
-    made = simulate.warehouse(**case.options)  # type: ignore[attr-defined]
-    scores = road_scores(road_map(groundplan.survey(made.map, threads=1)), made.truth, made.map)
+@pytest.mark.parametrize("case", suite("roadmaps"), ids=lambda case: case.name)
+def test_a_simulated_warehouse_s_aisles_are_joined_as_its_truth_joins_them(case: Case, tmp_path: Path) -> None:
+    made = simulate.warehouse(**case.options)
+    (file,) = groundplan.survey(made.map, threads=1).export(tmp_path / "x.route.geojson", map=made.map)
+    scores = road_scores(*read_route(file), made.truth, made.map)
     assert scores["joins_missing"] == scores["joins_extra"] == scores["lane_elsewhere_m"] == 0
     assert scores["lane_error_m"] <= 0.15 and scores["lane_clearance_m"] >= 0.4 and scores["node_ratio"] <= 1.3
 
 
-def test_the_scores_see_what_is_wrong_with_a_road_map() -> None:
+def test_a_lane_runs_between_the_posts_and_not_between_goods_that_stand_back_from_them() -> None:
+    made = simulate.warehouse(**next(case for case in suite("warehouses") if case.name == "turned").options)
+    survey = groundplan.survey(made.map, threads=1)
+    off = []
+    for roads in (road_map(survey), road_map(survey, map=made.map)):
+        nodes = np.array([node.at for node in roads.nodes])
+        edges = {(lane.start, lane.end) for lane in roads.lanes if lane.kind == "aisle"}
+        off.append(road_scores(nodes, edges, made.truth, made.map)["lane_error_m"])
+    assert off[0] > 0.15 and off[1] < 0.1
+
+
+def test_the_scores_see_what_is_wrong_with_a_road_map(tmp_path: Path) -> None:
     case = suite("roadmaps")[0]
     made = simulate.warehouse(**case.options)
-    roads = road_map(groundplan.survey(made.map, threads=1))
-    without = dataclasses.replace(roads, lanes=[lane for lane in roads.lanes if lane.name != "C01"])
-    assert road_scores(without, made.truth, made.map)["joins_missing"] > 0
-    moved = [dataclasses.replace(node, at=(node.at[0] + 0.3, node.at[1] + 0.3)) for node in roads.nodes]
-    assert road_scores(dataclasses.replace(roads, nodes=moved), made.truth, made.map)["lane_error_m"] > 0.25
-    across = dataclasses.replace(roads.lanes[0], start=0, end=len(roads.nodes) - 1)
-    wrong = road_scores(dataclasses.replace(roads, lanes=[*roads.lanes, across]), made.truth, made.map)
-    assert wrong["lane_clearance_m"] < 0.4 and wrong["joins_extra"] + wrong["lane_elsewhere_m"] > 0
+    (file,) = groundplan.survey(made.map, threads=1).export(tmp_path / "x.route.geojson", map=made.map)
+    nodes, edges = read_route(file)
+    mine = made.truth, made.map
+    cross = made.truth["corridors"][-1]
+    axis = shapely.LineString([cross["a"], cross["b"]]).buffer(0.3)
+    without = {edge for edge in edges if not axis.contains(shapely.LineString(nodes[list(edge)]))}
+    assert len(without) < len(edges) and road_scores(nodes, without, *mine)["joins_missing"] > 0
+    assert road_scores(nodes + 0.3, edges, *mine)["lane_error_m"] > 0.25
+    wrong = road_scores(nodes, edges | {(0, len(nodes) - 1)}, *mine)
+    assert wrong["lane_clearance_m"] < 0.4 and wrong["lane_elsewhere_m"] > 1 and wrong["joins_extra"] > 0
+    middles = np.array([nodes[list(edge)].mean(0) for edge in sorted(edges)])
+    split = {pair for n, (a, b) in enumerate(sorted(edges), len(nodes)) for pair in ((a, n), (n, b))}
+    more = road_scores(np.concatenate([nodes, middles]), split, *mine)["node_ratio"]
+    assert more > 1.5 * road_scores(nodes, edges, *mine)["node_ratio"]
+
+
+def test_a_file_that_is_no_route_graph_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match="does not exist"):
+        read_route(tmp_path / "none.geojson")
+    (tmp_path / "x.geojson").write_text('{"features": [{"geometry": {"type": "Point"}}]}')
+    with pytest.raises(FormatError, match=r"x\.geojson is no route graph"):
+        read_route(tmp_path / "x.geojson")
+
+
+def hall(*taken: tuple[float, float, float, float]) -> groundplan.Map:
+    """A hall of 24 m by 14 m: three aisles between two rows of racks, ways across at their ends, and what is given."""
+    pixels = np.full((280, 480), 254, np.uint8)
+    for x0, y0, x1, y1 in ((0, 0, 24, 0.2), (0, 13.8, 24, 14), (0, 0, 0.2, 14), (23.8, 0, 24, 14), *taken):
+        pixels[280 - round(y1 / 0.05) : 280 - round(y0 / 0.05), round(x0 / 0.05) : round(x1 / 0.05)] = 0
+    for y in (3.2, 8.6):
+        pixels[280 - round((y + 2.2) / 0.05) : 280 - round(y / 0.05), 60:420] = 0
+    return groundplan.from_array(pixels, 0.05)
+
+
+def test_no_lane_leads_through_what_stands_in_the_way_and_no_node_is_left_for_it() -> None:
+    free, box = hall(), hall((11.5, 6.6, 12.5, 7.4))
+    open, blocked = (road_map(groundplan.survey(map, threads=1), map=map) for map in (free, box))
+    assert {lane.name for lane in open.lanes} == {"A01", "A02", "A03", "C01", "C02"}
+    assert {lane.name for lane in blocked.lanes} == {"A01", "A03", "C01", "C02"}
+    assert {node.kind for node in blocked.nodes} == {"junction"} and len(blocked.nodes) == 4
+    assert min(degree(blocked).values()) == 2
+
+
+def test_a_lane_steps_aside_for_what_sticks_out() -> None:
+    plain, out = hall(), hall((10, 6.2, 11, 6.68), (14, 6.2, 15, 6.68))
+    lanes = [road_map(groundplan.survey(map, threads=1), map=out) for map in (plain, out)]
+    for roads in lanes:
+        lane = next(lane for lane in roads.lanes if lane.name == "A02")
+        line = shapely.LineString([roads.nodes[lane.start].at, roads.nodes[lane.end].at])
+        assert line.distance(shapely.box(10, 6.2, 11, 6.68)) >= 0.4
+        assert line.distance(shapely.LineString([(3, 7.0), (21, 7.0)])) < 0.15
 
 
 @pytest.mark.parametrize("which", [*GOOD, *ODD])

@@ -107,7 +107,7 @@ def run(arguments: argparse.Namespace) -> None:
     given = options(arguments, arguments.to)
     file, survey = open_survey(arguments.survey)
     with terminal.status(arguments.quiet) as status:
-        map = _map(arguments, survey, file)
+        map = _map(arguments, survey, file, given)
         if map is not None:
             given["map"] = map
         out = arguments.out or f"{file.parent / 'export'}{os.sep}"
@@ -116,13 +116,15 @@ def run(arguments: argparse.Namespace) -> None:
         terminal.put("".join(f"{file}\n" for file in written))
 
 
-def _map(arguments: argparse.Namespace, survey: Survey, file: Path) -> Map | None:
+def _map(arguments: argparse.Namespace, survey: Survey, file: Path, given: dict[str, Any]) -> Map | None:
     """The surveyed map, where a format has a use for it; None where it is not needed and not to be had."""
     from groundplan._cli.figures import agree, find_map
     from groundplan._errors import GroundplanError
     from groundplan.maps import read
 
-    uses = {form.map for form in arguments.to}
+    # Of the graphs, the road map's alone has a use for pixels.
+    places = given.get("graph", "places") != "roads"
+    uses = {"no" if places and "graph" in form.options else form.map for form in arguments.to}
     if uses == {"no"}:
         return None
     try:

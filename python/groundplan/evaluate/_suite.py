@@ -6,10 +6,12 @@ import math
 import multiprocessing
 import os
 import signal
+import tempfile
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from functools import partial
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -19,10 +21,9 @@ from groundplan import simulate
 from groundplan._errors import GroundplanError
 from groundplan.evaluate import Case, _reliability, _scores, score, score_regions, suite
 from groundplan.evaluate._names import name_scores
-from groundplan.evaluate._roads import road_scores
+from groundplan.evaluate._roads import read_route, road_scores
 from groundplan.maps import Map, read
 from groundplan.parameters import resolve, table
-from groundplan.roadmap import road_map
 from groundplan.stages import cores
 from groundplan.survey import survey
 
@@ -184,12 +185,17 @@ def _case(case: Case, labellers: tuple[str, ...]) -> dict[str, dict[str, Any]]:
         return _each(labellers, made.map, lambda found: _office(found, made, rooms))
     if case.place == "roads":
         made = simulate.warehouse(**case.options)
-        return {
-            method: road_scores(road_map(survey(made.map, threads=1, labels_method=method)), made.truth, made.map)
-            for method in labellers
-        }
+        return {method: _roads(made, method) for method in labellers}
     map = read(case.options["map"])
     return _each(labellers, map, lambda found: score_regions(found, map, case.options["truth"]))
+
+
+def _roads(made: simulate.Simulated, method: str) -> dict[str, Any]:
+    """Of the road map as a planner gets it: the written file."""
+    found = survey(made.map, threads=1, labels_method=method)
+    with tempfile.TemporaryDirectory() as directory:
+        (file,) = found.export(Path(directory) / "roads.route.geojson", "nav2", map=made.map)
+        return road_scores(*read_route(file), made.truth, made.map)
 
 
 def _remade(case: Case, method: str) -> dict[str, Any]:

@@ -133,6 +133,7 @@ FORMATS: dict[str, Format] = {
             options=("graph", *ROADS),
             needs=("networkx", "shapely"),
             extra="fleet",
+            map="may",
         ),
         Format(
             "ifc",
@@ -160,6 +161,7 @@ FORMATS: dict[str, Format] = {
             options=("graph", *ROADS),
             needs=("networkx", "shapely"),
             extra="fleet",
+            map="may",
         ),
         Format(
             "keepout",
@@ -178,6 +180,7 @@ FORMATS: dict[str, Format] = {
             options=("date", "vehicle_type", *ROADS),
             needs=("networkx", "shapely"),
             extra="fleet",
+            map="may",
         ),
         Format(
             "nav2",
@@ -187,6 +190,7 @@ FORMATS: dict[str, Format] = {
             options=ROADS,
             needs=("networkx", "shapely"),
             extra="fleet",
+            map="may",
         ),
         Format(
             "opentcs",
@@ -196,6 +200,7 @@ FORMATS: dict[str, Format] = {
             options=ROADS,
             needs=("networkx", "shapely"),
             extra="fleet",
+            map="may",
         ),
         Format(
             "pdf",
@@ -215,6 +220,7 @@ FORMATS: dict[str, Format] = {
             options=ROADS,
             needs=("networkx", "shapely"),
             extra="fleet",
+            map="may",
         ),
         Format(
             "rmf-nav",
@@ -224,6 +230,7 @@ FORMATS: dict[str, Format] = {
             options=ROADS,
             needs=("networkx", "shapely"),
             extra="fleet",
+            map="may",
         ),
         Format(
             "speed",
@@ -259,6 +266,7 @@ FORMATS: dict[str, Format] = {
             options=("date", *ROADS),
             needs=("networkx", "shapely"),
             extra="fleet",
+            map="may",
         ),
         Format(
             "vector-objects",

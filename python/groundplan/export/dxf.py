@@ -68,7 +68,7 @@ def write(
         plan.underlay(map, picture.name)
     plan.lines(survey)
     plan.places(survey, places(survey))
-    plan.roads(road_map(survey, **roads))
+    plan.roads(road_map(survey, map=map, **roads))
     with contextlib.ExitStack() as files:
         beside = files.enter_context(whole(path))
         if map is not None and picture is not None:

@@ -20,6 +20,7 @@ from groundplan._extras import needed
 from groundplan.roadmap._model import Directed, Lane, Node, PickFace, RoadMap, Zone
 
 if TYPE_CHECKING:
+    from groundplan.maps import Map
     from groundplan.survey import Survey
 
 __all__ = ["Directed", "Lane", "Node", "PickFace", "RoadMap", "Zone", "road_map"]
@@ -31,6 +32,7 @@ def road_map(
     vehicle_width: float | None = None,
     rules: str | os.PathLike[str] | Sequence[Mapping[str, Any]] | None = None,
     spurs: float | None = None,
+    map: Map | None = None,
 ) -> RoadMap:
     """The road map of a survey. The same survey and options give the same one.
 
@@ -46,6 +48,10 @@ def road_map(
     spurs
         Where given, a spur leads square from the lane to each pick face and ends so many metres before it, and the
         vehicle stands there; else it stands on the lane.
+    map
+        The surveyed map. Where it is given centre lines are held against the posts of racks, and no lane comes nearer
+        than 0.4 m (than half the vehicle's width where that is more) to an occupied pixel; less only in doors under
+        0.8 m, and in such corridors where a vehicle is given that fits them.
 
     Raises
     ------
@@ -64,4 +70,4 @@ def road_map(
     from groundplan.roadmap._build import build
     from groundplan.roadmap._rules import rules as read_rules
 
-    return build(survey, read_rules(rules), vehicle_width, spurs)
+    return build(survey, read_rules(rules), vehicle_width, spurs, map)

@@ -3,27 +3,34 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 from collections import Counter
 from typing import TYPE_CHECKING
 
 from groundplan.export._places import Place, main_angle, places, square
-from groundplan.roadmap import _doors, _faces, _lanes, _open
+from groundplan.maps import Map
+from groundplan.roadmap import _centre, _doors, _faces, _lanes, _open
+from groundplan.roadmap._lanes import Way
 from groundplan.roadmap._model import Lane, Node, PickFace, Point, RoadMap, Zone
+from groundplan.roadmap._pixels import Pixels
 from groundplan.roadmap._rules import Rule, ruled
 
 if TYPE_CHECKING:
     from groundplan.survey import Survey
 
 
-def build(survey: Survey, rules: list[Rule], vehicle_width: float | None, spurs: float | None) -> RoadMap:
+def build(
+    survey: Survey, rules: list[Rule], vehicle_width: float | None, spurs: float | None, map: Map | None
+) -> RoadMap:
     """As `groundplan.roadmap.road_map`, its options checked."""
-    made = _Builder(survey, rules, vehicle_width)
+    made = _Builder(survey, rules, vehicle_width, None if map is None else Pixels(map))
     made.junctions()
     made.faces(spurs)
-    regions = _doors.Regions(survey, made.places, made.ways)
+    regions = _doors.Regions(survey, made.places, made.ways, made.pixels, vehicle_width)
     made.doors(regions)
     made.open_space(regions)
+    made.passed()
     made.aisles()
     return made.road_map()
 
@@ -31,12 +38,16 @@ def build(survey: Survey, rules: list[Rule], vehicle_width: float | None, spurs:
 class _Builder:
     """Nodes and lanes as they are found."""
 
-    def __init__(self, survey: Survey, rules: list[Rule], vehicle_width: float | None) -> None:
-        self.survey, self.rules, self.vehicle = survey, rules, vehicle_width or 0.0
+    def __init__(self, survey: Survey, rules: list[Rule], vehicle_width: float | None, pixels: Pixels | None) -> None:
+        self.survey, self.rules, self.vehicle, self.pixels = survey, rules, vehicle_width, pixels
         self.places = places(survey)
         ways = _lanes.ways([p for p in self.places if self._open(p)])
         least = _lanes.narrowest(ways) if vehicle_width is None else vehicle_width
         self.ways = {corridor: way for corridor, way in ways.items() if way.width >= least}
+        if pixels is not None:
+            for corridor, way in self.ways.items():
+                keep = pixels.keep(way.width, vehicle_width)
+                self.ways[corridor] = _centre.centred(survey, self.places, way, pixels, keep)
         self.nodes: list[Node] = []
         self.lanes: list[Lane] = []
         self.picks: list[PickFace] = []
@@ -95,7 +106,7 @@ class _Builder:
         """A node in each door, joined to the lane or the room on either side."""
         doors: dict[int, int] = {}
         rooms: dict[int, int] = {}
-        found = list(_doors.branches(self.survey, self.places, regions, self.vehicle))
+        found = list(_doors.branches(self.survey, self.places, regions, self.vehicle or 0.0))
         # A door that leads nowhere, or from a lane to the same lane, is none.
         sides = Counter(branch.door for branch in {b.leads_to: b for b in found}.values())
         for branch in found:
@@ -130,7 +141,11 @@ class _Builder:
         return made
 
     def open_space(self, regions: _doors.Regions) -> None:
-        """Lanes from aisles that end in a hall to the next."""
+        """Lanes from aisles that end in a hall straight on, or to the next."""
+        for corridor, way in self.ways.items():
+            for side in (0, -1):
+                if way.stops and self.nodes[way.stops[side][1]].kind == "end":
+                    self._straight_on(regions, corridor, side)
         for way in self.ways.values():
             for side in (0, -1):
                 stop = way.stops[side][1]
@@ -139,10 +154,10 @@ class _Builder:
                     if ahead is not None:
                         way.stops[side] = (ahead, stop)
                         self.nodes[stop] = dataclasses.replace(self.nodes[stop], at=way.point(ahead))
-        net = _open.Net(self.nodes, self.lanes, self.ways)
+        net = _open.Net(self.lanes, self.ways)
         found = list(_open.links(regions, self.ways, self.nodes, net, main_angle(self.survey)))
         for number, link in enumerate(found, 1):
-            if 2 * link.half < self.vehicle:
+            if 2 * link.half < (self.vehicle or 0.0):
                 continue
             id, start, place = f"H{number:02}", link.stop, self.ways[link.corridor].place
             if link.turn is not None:
@@ -154,13 +169,49 @@ class _Builder:
                 if self.nodes[node].kind == "end":  # the way goes on
                     self.nodes[node] = dataclasses.replace(self.nodes[node], kind="turn")
 
+    def _straight_on(self, regions: _doors.Regions, corridor: int, side: int) -> None:
+        """Lead a corridor's lane on to the next one ahead, where the way is free; its end is none then."""
+        ahead = _open.straight_on(regions, self.ways, corridor, side == -1)
+        if ahead is not None:
+            way = self.ways[corridor]
+            way.stops.pop(side)
+            node = self._foot(*ahead, way.place.id, way.place.name)
+            way.add(self.nodes[node].at, node)
+            if self.nodes[node].kind == "end":  # the way goes on
+                self.nodes[node] = dataclasses.replace(self.nodes[node], kind="turn")
+
     def aisles(self) -> None:
         """Lanes from each stop of a corridor to the next."""
         for way in self.ways.values():
-            for number, ((_, a), (_, b)) in enumerate(zip(way.stops, way.stops[1:], strict=False), 1):
-                off = [way.place_of(self.nodes[n].at)[1] for n in (a, b)]
+            for number, ((_, a), (_, b)) in enumerate(itertools.pairwise(way.stops), 1):
+                if not self._leads(way, a, b):
+                    continue
+                off = [way.aside + way.place_of(self.nodes[n].at)[1] for n in (a, b)]
                 left, right = way.width / 2 - max(*off, 0.0), way.width / 2 + min(*off, 0.0)
                 self._lane(f"{way.place.id}.{number}", a, b, "aisle", way.place, max(left, 0.0), max(right, 0.0))
+
+    def _leads(self, way: Way, a: int, b: int) -> bool:
+        """Whether nothing stands in the way from one stop of a corridor to the next, as far as pixels are known."""
+        if self.pixels is None:
+            return True
+        return self.pixels.open([self.nodes[n].at for n in (a, b)], self.pixels.keep(way.width, self.vehicle))
+
+    def passed(self) -> None:
+        """Junctions that only one corridor's lane runs through, because the others' are blocked, mean nothing."""
+        if self.pixels is None:
+            return
+        ends: dict[int, list[tuple[int, int]]] = {}
+        for corridor, way in self.ways.items():
+            for (_, a), (_, b) in itertools.pairwise(way.stops):
+                if self._leads(way, a, b):
+                    ends.setdefault(a, []).append((corridor, b))
+                    ends.setdefault(b, []).append((corridor, a))
+        used = {end for lane in self.lanes for end in (lane.start, lane.end)}
+        for stop, leads in ends.items():
+            if self.nodes[stop].kind == "junction" and stop not in used and len(leads) == 2:
+                (one, _), (other, _) = leads
+                if one == other:
+                    self.ways[one].stops = [kept for kept in self.ways[one].stops if kept[1] != stop]
 
     def road_map(self) -> RoadMap:
         """What has come together: nodes that a lane joins, and the zones."""

@@ -12,13 +12,12 @@ import shapely
 
 from groundplan.roadmap._lanes import Way
 from groundplan.roadmap._model import Point
+from groundplan.roadmap._pixels import CLEAR_M, Pixels
 
 if TYPE_CHECKING:
     from groundplan.export._places import Place
     from groundplan.survey import Survey
 
-#: What a lane keeps from what is not free, metres; at the door itself the jambs are nearer.
-CLEAR_M = 0.4
 #: Of a door's lane so much may lie between the regions, in the wall itself, metres.
 THRESHOLD_M = 0.3
 #: A door this near to a stop, along the lane, is reached from that stop, metres.
@@ -27,6 +26,10 @@ AT_STOP_M = 0.3
 STRAIGHT_M, STEP_M = 8.0, 0.25
 #: A turn is worth a detour of so much, metres.
 TURN_M = 2.0
+#: Labels of so little confidence are spoken of as unsure.
+UNSURE = 0.5
+#: What is less is a small room, square metres.
+SMALL_M2 = 6.0
 #: A lane that runs through a region for longer than this is one of its lanes, metres.
 THROUGH_M = 0.3
 
@@ -53,13 +56,16 @@ class Branch:
 def branches(survey: Survey, places: list[Place], regions: Regions, least_m: float) -> Iterator[Branch]:
     """Both sides of every door that is at least so wide, as far as there is a straight or once bent way from it.
 
-    Doors that lanes run through as it is have none.
+    Doors that lanes run through as it is have none, and so have alcoves and what may be none.
     """
     for door in places:
         label = survey.labels[door.label]
         if door.kind != "door" or (door.width is not None and door.width < least_m) or regions.passed(door):
             continue
-        for region in dict.fromkeys(label.get("between", ())):
+        between = list(dict.fromkeys(label.get("between", ())))
+        if any(regions.is_none(survey, region, door) for region in between):
+            continue
+        for region in between:
             found = regions.branch(door, region)
             if found is not None:
                 yield found
@@ -68,8 +74,10 @@ def branches(survey: Survey, places: list[Place], regions: Regions, least_m: flo
 class Regions:
     """The regions' free space, less what a lane keeps from walls and racks; made when first asked for."""
 
-    def __init__(self, survey: Survey, places: list[Place], ways: dict[int, Way]) -> None:
-        self.places, self.ways = places, ways
+    def __init__(
+        self, survey: Survey, places: list[Place], ways: dict[int, Way], pixels: Pixels | None, vehicle: float | None
+    ) -> None:
+        self.places, self.ways, self.pixels, self.vehicle = places, ways, pixels, vehicle
         self.walls = shapely.multilinestrings(shapely.linestrings(survey.walls.points.reshape(-1, 2, 2)))
         self.racks = shapely.union_all([p.shape for p in places if p.kind == "rack" and p.shape is not None])
         self.clear: dict[int, Any] = {}
@@ -100,11 +108,23 @@ class Regions:
             if line.intersection(mouth).difference(self.places[region].shape).length > THRESHOLD_M:
                 return False
             line = line.difference(mouth)
-        return line.is_empty or bool(self.space(region).covers(line))
+        if not line.is_empty and not self.space(region).covers(line):
+            return False
+        if self.pixels is None:
+            return True
+        width = math.inf if door is None or door.width is None else door.width
+        return self.pixels.open(points, self.pixels.keep(width, self.vehicle or 0.0))
 
     def open(self, region: int, points: list[Point]) -> bool:
         """Whether a line keeps clear of all that stands in a region, what is seen of single posts too."""
         return self.free(region, points) and shapely.LineString(points).distance(self.walls) >= CLEAR_M
+
+    def leads(self, a: Point, b: Point) -> bool:
+        """Whether a straight way is free from one place to another, whatever regions it runs through."""
+        if self.pixels is not None:
+            line = shapely.LineString([a, b])
+            return self.pixels.free(a, b) and self.pixels.open([a, b]) and not line.intersects(self.racks)
+        return any(self.open(region, [a, b]) for region in self.within)
 
     def outside(self, region: int, at: Point) -> bool:
         """Whether a point lies clearly outside a region."""
@@ -121,6 +141,17 @@ class Regions:
             return any(line.distance(shapely.Point(door.centre)) < AT_STOP_M for line in self.lines.values())
         across = shapely.LineString(door.axis)
         return any(line.intersects(across) for line in self.lines.values())
+
+    def is_none(self, survey: Survey, region: int, door: Place) -> bool:
+        """Whether a region without lanes is no room to drive into, but a gap between goods.
+
+        Those are less deep than their mouth is wide, or small and unsure.
+        """
+        if not 0 <= region < len(self.places) or self.places[region].shape is None or self.within.get(region):
+            return False
+        sure: float = survey.labels[region].get("confidence", 1.0)
+        small = SMALL_M2 if sure <= UNSURE else 0.0
+        return bool(self.places[region].shape.area < max(small, (door.width or 0.0) ** 2))
 
     def branch(self, door: Place, region: int) -> Branch | None:
         """The shortest way from a door to a lane in the region, or to its middle where it has no lanes."""

@@ -43,7 +43,8 @@ class Stop:
 class Way:
     """A corridor's centre line and the stops on it, as (metres from its start, stop).
 
-    It runs to the right, or up where it is steeper than that: so do the numbers of the aisles.
+    It runs to the right, or up where it is steeper than that: so do the numbers of the aisles. `aside` is how far the
+    lane lies to the left of the middle.
     """
 
     place: Place
@@ -51,6 +52,7 @@ class Way:
     along: Point
     length: float
     width: float
+    aside: float = 0.0
     stops: list[tuple[float, int]] = field(default_factory=list)
 
     def place_of(self, at: Point) -> tuple[float, float]:
@@ -136,7 +138,7 @@ def _crossings(junction: int, at: Point, corridors: list[int], ways: dict[int, W
     """Where the centre lines of a junction's corridors cross: one stop, or several where aisles are out of line."""
     found: list[tuple[list[Point], set[int]]] = []
     for a, b in itertools.combinations(corridors, 2):
-        point = _crossing(ways[a], ways[b])
+        point = crossing(ways[a], ways[b])
         if point is None or math.dist(point, at) > max(ways[a].width, ways[b].width):
             continue
         near = next((group for group in found if math.dist(_mean(group[0]), point) < ONE_NODE_M), None)
@@ -150,7 +152,8 @@ def _crossings(junction: int, at: Point, corridors: list[int], ways: dict[int, W
     return [Stop(_mean(points), "junction", junction, sorted(members)) for points, members in found]
 
 
-def _crossing(a: Way, b: Way) -> Point | None:
+def crossing(a: Way, b: Way) -> Point | None:
+    """Where two centre lines cross, however far they have to go on for it; None where they run alike."""
     cross = a.along[0] * b.along[1] - a.along[1] * b.along[0]
     if abs(cross) < math.sin(CROSSING_RAD):
         return None

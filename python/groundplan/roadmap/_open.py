@@ -1,7 +1,7 @@
-"""Lanes through open space: from the end of an aisle to the next lane that can be seen from it.
+"""Lanes through open space: from the end of an aisle straight on, or to the next lane that can be seen from it.
 
-Aisles often end in a hall that is too wide to be a corridor; what lies in one region is joined there, by as little as
-will do.
+Aisles often end in a hall that is too wide to be a corridor; what lies apart in one region is joined there, by as
+little as will do.
 """
 
 from __future__ import annotations
@@ -15,11 +15,9 @@ from typing import Any
 import networkx
 
 from groundplan.roadmap._doors import TURN_M, Regions
-from groundplan.roadmap._lanes import Way
+from groundplan.roadmap._lanes import ONE_NODE_M, Way, crossing
 from groundplan.roadmap._model import Lane, Node, Point
 
-#: A link from an aisle's end is worth having where the way round is so many times as long.
-SPARED = 3.0
 #: An aisle that ends in the open goes on so far beyond its racks that a lane across it clears them, metres.
 BEYOND_M = 1.0
 
@@ -36,41 +34,52 @@ class Link:
 
 
 class Net:
-    """Lanes as a graph that grows, for asking how far it is from one place to another along them."""
+    """Lanes as a graph that grows, for asking whether they lead from one place to another."""
 
-    def __init__(self, nodes: list[Node], lanes: list[Lane], ways: dict[int, Way]) -> None:
+    def __init__(self, lanes: list[Lane], ways: dict[int, Way]) -> None:
         self.graph: networkx.Graph[Any] = networkx.Graph()
         self.ways = ways
         for lane in lanes:
-            self.graph.add_edge(lane.start, lane.end, length=math.dist(nodes[lane.start].at, nodes[lane.end].at))
+            self.graph.add_edge(lane.start, lane.end)
         for way in ways.values():
             self.graph.add_nodes_from(stop for _, stop in way.stops)
-            for (here, a), (there, b) in itertools.pairwise(way.stops):
-                self.graph.add_edge(a, b, length=there - here)
-
-    def nearer(self, stop: int, corridor: int, along: float, length: float) -> bool:
-        """Whether lanes lead from a stop to a place on a corridor within a length."""
-        reached = networkx.single_source_dijkstra_path_length(self.graph, stop, cutoff=length, weight="length")
-        stops = self.ways[corridor].stops
-        return any(reached[node] + abs(place - along) <= length for place, node in stops if node in reached)
+            networkx.add_path(self.graph, [stop for _, stop in way.stops])
 
     def reached(self, stop: int, corridor: int) -> bool:
         """Whether lanes lead from a stop to a corridor."""
         return bool(networkx.has_path(self.graph, stop, self.ways[corridor].stops[0][1]))
 
-    def link(self, stop: int, corridor: int, along: float, length: float) -> None:
+    def link(self, stop: int, corridor: int) -> None:
         """Add a link."""
-        place = (corridor, along)
-        self.graph.add_edge(stop, place, length=length)
-        for other, node in self.ways[corridor].stops:
-            self.graph.add_edge(place, node, length=abs(other - along))
+        self.graph.add_edge(stop, self.ways[corridor].stops[0][1])
+
+
+def straight_on(regions: Regions, ways: dict[int, Way], corridor: int, far: bool) -> tuple[int, float] | None:
+    """The next lane that a corridor's own leads to when it goes straight on, and where on that; None without a way."""
+    way = ways[corridor]
+    last = way.stops[-1 if far else 0][0]
+    found = []
+    for other, lane in ways.items():
+        if other == corridor or len(lane.stops) < 2:
+            continue
+        at = crossing(way, lane)
+        if at is None:  # an aisle that goes on behind another one
+            ends = (lane.point(lane.stops[side][0]) for side in (0, -1))
+            at = min(ends, key=lambda end: math.dist(end, way.point(last)))
+            if abs(way.place_of(at)[1]) > ONE_NODE_M:
+                continue
+        ahead = (way.place_of(at)[0] - last) * (1 if far else -1)
+        along, _ = lane.place_of(at)
+        if ahead > 0 and lane.stops[0][0] - ONE_NODE_M <= along <= lane.stops[-1][0] + ONE_NODE_M:
+            found.append((ahead, other, along))
+    if not found:
+        return None
+    _, other, along = min(found)
+    return (other, along) if regions.leads(way.point(last), ways[other].point(along)) else None
 
 
 def links(regions: Regions, ways: dict[int, Way], nodes: list[Node], net: Net, angle: float) -> Iterator[Link]:
-    """The shortest links that join what lies apart in a region, and those that spare an aisle's end a long way round.
-
-    Turns are square to `angle`.
-    """
+    """The shortest links that join what lies apart in a region; turns are square to `angle`."""
     for region, corridors in regions.within.items():
         options: list[tuple[float, int, int, float, Point | None, list[Point]]] = []
         for corridor, other in itertools.permutations(corridors, 2):
@@ -88,10 +97,9 @@ def links(regions: Regions, ways: dict[int, Way], nodes: list[Node], net: Net, a
                         cost = length + (0.0 if turn is None else TURN_M)
                         options.append((cost, stop, other, target, turn, points))
         options.sort(key=lambda option: option[:4])
-        for length, stop, other, target, turn, points in options:
-            spares = turn is None and nodes[stop].kind == "end" and not net.nearer(stop, other, target, SPARED * length)
-            if (spares or not net.reached(stop, other)) and regions.open(region, points):
-                net.link(stop, other, target, length)
+        for _, stop, other, target, turn, points in options:
+            if not net.reached(stop, other) and regions.open(region, points):
+                net.link(stop, other)
                 yield Link(stop, other, target, turn, regions.beside(region, points))
 
 
