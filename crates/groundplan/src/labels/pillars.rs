@@ -196,7 +196,7 @@ fn blobs(evidence: &Evidence, raster: &Raster, grounds: &[Vec<[f64; 2]>]) -> Vec
     let (least, most) = (evidence.parameters.pillars_min_width, evidence.parameters.pillars_max_width);
     let frame = &evidence.grid.frame;
     let mut blobs = Vec::new();
-    for island in &raster.islands {
+    for island in &raster.islands.small {
         let width = (island.length * island.thickness).sqrt() * raster.resolution;
         let grid = raster.to_grid(island.middle);
         let at = frame.to_metres(grid);

@@ -1,8 +1,11 @@
 //! The free space cut along all bars, and the pieces joined again where the way between them is no narrower than they
 //! are: what stays apart are regions, and what parts them are their openings.
 
+use super::bits::{WORD, lowest};
+use super::fill::fill;
 use super::gaps::Bar;
-use super::raster::{Raster, Sets};
+use super::raster::Raster;
+use super::runs::{Run, Runs, Sets, runs_of};
 use std::collections::BinaryHeap;
 
 /// Bars go on into their jambs for so many pixels, so that nothing slips past their ends.
@@ -19,9 +22,9 @@ const DOORWAY: f64 = 1.0;
 /// A piece whose outline is open for more than this share is part of what it opens into.
 const OPEN: f64 = 0.6;
 
-/// Regions by pixel, 0 for none, and the jambs of what parts them, in the raster's places.
+/// Regions by pixel, and the jambs of what parts them, in the raster's places.
 pub struct Cells {
-    pub regions: Vec<u32>,
+    pub regions: Runs,
     pub openings: Vec<[[f64; 2]; 2]>,
 }
 
@@ -44,17 +47,22 @@ pub struct Rules {
 /// Cuts the free space along all bars and joins what belongs together.
 pub fn find(raster: &Raster, bars: &[Bar], rules: &Rules) -> Cells {
     let lines: Vec<Vec<usize>> = bars.iter().map(|bar| pixels_of(raster, bar)).collect();
-    let mut cut = raster.free.clone();
-    lines.iter().flatten().for_each(|&pixel| cut[pixel] = false);
-    let pieces = raster.pieces(|pixel| u32::from(cut[pixel]));
-    let stretches = stretches(raster, bars, &lines, &pieces.numbers);
-    let mut joining = Joining::new(raster, bars, rules, &stretches, pieces);
+    let mut cut: Vec<usize> = lines.iter().flatten().copied().collect();
+    cut.sort_unstable();
+    cut.dedup();
+    let mut pieces = Runs::new(raster.width, raster.len(), runs_of(&raster.free, raster.len(), &cut));
+    let (numbers, count) = pieces.pieces();
+    pieces.all.iter_mut().zip(&numbers).for_each(|(run, &number)| run.number = number);
+    drop(numbers);
+    let stretches = stretches(raster, bars, &lines, &pieces);
+    let mut joining = Joining::new(raster, bars, rules, &stretches, pieces, count);
     joining.join_open();
     joining.join_unwalled();
-    let numbers = std::mem::take(&mut joining.numbers);
     let roots: Vec<u32> = (0..joining.wall.len() as u32).map(|n| joining.sets.of(n)).collect();
-    let mut regions: Vec<u32> = numbers.iter().map(|&n| roots[n as usize]).collect();
-    fill_cuts(raster, &mut regions);
+    let mut regions = joining.pieces;
+    regions.all.iter_mut().for_each(|run| run.number = roots[run.number as usize]);
+    let filled = fill(raster, &regions, &cut);
+    let regions = regions.with(&filled);
     let openings = stretches
         .iter()
         .filter(|stretch| roots[stretch.pieces[0] as usize] != roots[stretch.pieces[1] as usize])
@@ -73,12 +81,12 @@ fn pixels_of(raster: &Raster, bar: &Bar) -> Vec<usize> {
     let steps = (to[0] - from[0]).abs().max((to[1] - from[1]).abs()).ceil().max(1.0);
     (0..=steps as usize)
         .map(|n| [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * n as f64 / steps))
-        .filter_map(|place| raster.at(place).filter(|&pixel| raster.free[pixel]))
+        .filter_map(|place| raster.at(place).filter(|&pixel| raster.free.get(pixel)))
         .collect()
 }
 
 /// Each bar's stretches, in the bars' order.
-fn stretches(raster: &Raster, bars: &[Bar], lines: &[Vec<usize>], numbers: &[u32]) -> Vec<Stretch> {
+fn stretches(raster: &Raster, bars: &[Bar], lines: &[Vec<usize>], pieces: &Runs) -> Vec<Stretch> {
     let mut found: Vec<Stretch> = Vec::new();
     for (bar, line) in lines.iter().enumerate() {
         let [ux, uy] = bars[bar].heading();
@@ -88,8 +96,8 @@ fn stretches(raster: &Raster, bars: &[Bar], lines: &[Vec<usize>], numbers: &[u32
             let piece = |side: f64| {
                 (1..=BESIDE)
                     .map(|n| side * f64::from(n))
-                    .map_while(|n| raster.at([x - uy * n, y + ux * n]).filter(|&beside| raster.free[beside]))
-                    .map(|beside| numbers[beside])
+                    .map_while(|n| raster.at([x - uy * n, y + ux * n]).filter(|&beside| raster.free.get(beside)))
+                    .map(|beside| pieces.at(beside))
                     .find(|&number| number != 0)
                     .unwrap_or(0)
             };
@@ -128,7 +136,7 @@ struct Joining<'a> {
     bars: &'a [Bar],
     rules: &'a Rules,
     stretches: &'a [Stretch],
-    numbers: Vec<u32>,
+    pieces: Runs,
     /// Pieces that are small, before they were joined.
     small: Vec<bool>,
     sets: Sets,
@@ -167,12 +175,13 @@ impl<'a> Joining<'a> {
         bars: &'a [Bar],
         rules: &'a Rules,
         stretches: &'a [Stretch],
-        pieces: super::raster::Pieces,
+        pieces: Runs,
+        count: usize,
     ) -> Self {
-        let (mut area, mut wall) = (vec![0; pieces.count + 1], vec![0; pieces.count + 1]);
-        for (pixel, &number) in pieces.numbers.iter().enumerate().filter(|(_, number)| **number != 0) {
-            area[number as usize] += 1;
-            wall[number as usize] += usize::from(raster.sides(pixel).iter().any(|&beside| !raster.free[beside]));
+        let (mut area, mut wall) = (vec![0; count + 1], vec![0; count + 1]);
+        for run in &pieces.all {
+            area[run.number as usize] += run.len();
+            wall[run.number as usize] += touching_wall(raster, run);
         }
         let least = DOORWAY / raster.resolution.powi(2);
         Self {
@@ -183,9 +192,9 @@ impl<'a> Joining<'a> {
             small: area.iter().enumerate().map(|(n, &count)| n > 0 && count as f64 <= least).collect(),
             area,
             wall,
-            sets: Sets::new(pieces.count + 1),
-            age: vec![0; pieces.count + 1],
-            numbers: pieces.numbers,
+            sets: Sets::new(count + 1),
+            age: vec![0; count + 1],
+            pieces,
         }
     }
 
@@ -224,28 +233,64 @@ impl<'a> Joining<'a> {
 
     /// Joins what has more openings than walls to what it opens into most, the most open first.
     fn join_unwalled(&mut self) {
-        loop {
-            let mut open = vec![0usize; self.wall.len()];
-            for n in 0..self.stretches.len() {
-                let [a, b] = self.sides(n);
-                if a != b {
-                    open[a as usize] += self.stretches[n].pixels.len();
-                    open[b as usize] += self.stretches[n].pixels.len();
+        // Of each set its stretches, and how many of their pixels part it from others.
+        let mut own: Vec<Vec<u32>> = vec![Vec::new(); self.wall.len()];
+        let mut open = vec![0usize; self.wall.len()];
+        for n in 0..self.stretches.len() {
+            let sides = self.sides(n);
+            if sides[0] != sides[1] {
+                for side in sides {
+                    own[side as usize].push(n as u32);
+                    open[side as usize] += self.stretches[n].pixels.len();
                 }
             }
-            let share =
-                |set: u32| open[set as usize] as f64 / (open[set as usize] + self.wall[set as usize]).max(1) as f64;
-            let unwalled: Vec<bool> = (0..self.wall.len() as u32).map(|set| share(set) > OPEN).collect();
-            let mut best: Option<Openness> = None;
-            for n in 0..self.stretches.len() {
-                let sides = self.sides(n);
-                if sides[0] != sides[1] && sides.iter().any(|&side| unwalled[side as usize]) {
-                    best = best.max(Some(self.measure(n)));
+        }
+        let is_unwalled = |open: usize, wall: usize| open as f64 / (open + wall).max(1) as f64 > OPEN;
+        let mut unwalled: Vec<bool> =
+            open.iter().zip(&self.wall).map(|(open, wall)| is_unwalled(*open, *wall)).collect();
+        let mut queue = BinaryHeap::new();
+        for n in 0..self.stretches.len() {
+            let sides = self.sides(n);
+            if sides[0] != sides[1] && sides.iter().any(|&side| unwalled[side as usize]) {
+                queue.push(self.measure(n));
+            }
+        }
+        while let Some(most) = queue.pop() {
+            let sides = self.sides(most.stretch);
+            if sides[0] == sides[1] || !sides.iter().any(|&side| unwalled[side as usize]) {
+                continue;
+            }
+            if sides.map(|side| self.age[side as usize]) != most.ages {
+                queue.push(self.measure(most.stretch));
+                continue;
+            }
+            let [mut few, mut many] = sides.map(|side| std::mem::take(&mut own[side as usize]));
+            if few.len() > many.len() {
+                std::mem::swap(&mut few, &mut many);
+            }
+            let mut between = 0;
+            for &n in &few {
+                let mut pair = self.sides(n as usize);
+                pair.sort_unstable();
+                if pair == [sides[0].min(sides[1]), sides[0].max(sides[1])] {
+                    between += self.stretches[n as usize].pixels.len();
                 }
             }
-            let Some(best) = best else { break };
-            let sides = self.sides(best.stretch);
             self.join(sides);
+            let to = self.sets.of(sides[0]) as usize;
+            let [a, b] = sides.map(|side| side as usize);
+            open[to] = open[a] + open[b] - 2 * between;
+            let grown = is_unwalled(open[to], self.wall[to]);
+            let before = [unwalled[a], unwalled[b]];
+            many.extend(few);
+            if grown && before != [true; 2] {
+                many.retain(|&n| self.sides(n as usize)[0] != self.sides(n as usize)[1]);
+                for &n in &many {
+                    queue.push(self.measure(n as usize));
+                }
+            }
+            unwalled[to] = grown;
+            own[to] = many;
         }
     }
 
@@ -274,9 +319,9 @@ impl<'a> Joining<'a> {
         // Walls' thickness in a doorway counts only for the doorway's own piece, `own`.
         let mut is_in = |place: [f64; 2], own: Option<u32>| {
             let pixel = self.raster.at(place)?;
-            let number = self.numbers[pixel];
+            let number = self.pieces.at(pixel);
             let inside = match number {
-                0 => self.raster.free[pixel],
+                0 => self.raster.free.get(pixel),
                 _ => {
                     self.sets.of(number) == set && (own.is_none_or(|own| own == number) || !self.small[number as usize])
                 }
@@ -305,22 +350,13 @@ impl<'a> Joining<'a> {
     }
 }
 
-/// Gives the free pixels under the bars to the regions beside them.
-pub fn fill_cuts(raster: &Raster, regions: &mut [u32]) {
-    let mut todo: Vec<usize> = (0..regions.len()).filter(|&pixel| raster.free[pixel] && regions[pixel] == 0).collect();
-    loop {
-        let beside = |&pixel: &usize| raster.sides(pixel).iter().map(|&b| regions[b]).find(|&region| region != 0);
-        let found: Vec<(usize, Option<u32>)> = todo.iter().map(|pixel| (*pixel, beside(pixel))).collect();
-        let mut rest = Vec::new();
-        for &(pixel, region) in &found {
-            match region {
-                Some(region) => regions[pixel] = region,
-                None => rest.push(pixel),
-            }
-        }
-        if rest.len() == todo.len() {
-            return;
-        }
-        todo = rest;
-    }
+/// How many pixels of a run have a side on what is not free.
+fn touching_wall(raster: &Raster, run: &Run) -> usize {
+    let (free, width, pixels) = (&raster.free, raster.width, run.pixels());
+    let part = |at: usize| {
+        let around = raster.sides(at).map(|beside| free.word(beside));
+        (!(around[0] & around[1] & around[2] & around[3]) & lowest(pixels.end - at)).count_ones() as usize
+    };
+    debug_assert!(pixels.start > width);
+    pixels.clone().step_by(WORD).map(part).sum()
 }

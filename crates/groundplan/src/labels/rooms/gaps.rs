@@ -23,7 +23,7 @@ impl Bar {
         let jamb = |[x, y]: [f64; 2], way: f64| {
             (1..=JAMB_PIXELS)
                 .filter_map(|n| raster.at([x + way * ux * f64::from(n), y + way * uy * f64::from(n)]))
-                .any(|pixel| raster.solid[pixel])
+                .any(|pixel| raster.islands.solid.contains(pixel))
         };
         jamb(self.ends[0], -1.0) || jamb(self.ends[1], 1.0)
     }
@@ -138,7 +138,7 @@ impl<'a> Line<'a> {
         let [x, y] = self.place(step);
         (-near..=near).all(|n| {
             let place = [x - self.step[1] * n as f64, y + self.step[0] * n as f64];
-            self.raster.at(place).is_some_and(|pixel| self.raster.free[pixel])
+            self.raster.at(place).is_some_and(|pixel| self.raster.free.get(pixel))
         })
     }
 

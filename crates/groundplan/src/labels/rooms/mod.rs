@@ -5,23 +5,32 @@
 //! about as wide as the space on one of its sides, the most open first ([`cells`]). A cut that stays is narrower than
 //! what lies on both its sides: a door.
 
+mod bits;
 mod cells;
+mod clearance;
 mod corridors;
+mod fill;
 mod fine;
 mod gaps;
+mod islands;
 mod narrows;
 mod outlines;
 mod raster;
+mod runs;
 
 use super::places::Squares;
 use super::{Evidence, Label, Purpose, outline};
 use crate::grid::{Grid, State, tidy};
 use crate::subdivision::distance;
 use cells::Rules;
+use clearance::Clearance;
 pub use corridors::Corridor;
+use fill::fill_runs;
 use fine::Fine;
 use gaps::Bar;
 pub use raster::Raster;
+use runs::Runs;
+use std::collections::BTreeMap;
 
 /// What stands apart from all else is a region when it holds so much, square metres, and has room for a circle of such a
 /// radius, metres: less is a ray through a window.
@@ -105,8 +114,7 @@ pub struct Racked {
 /// The free space of a map.
 pub struct Space {
     pub raster: Raster,
-    /// Of each pixel of the raster.
-    clearance: Vec<u32>,
+    clearance: Clearance,
     narrows: Vec<Bar>,
 }
 
@@ -114,8 +122,8 @@ impl Space {
     /// Nothing when nothing is free.
     pub fn new(grid: &Grid, threads: usize) -> Option<Self> {
         let raster = Raster::new(grid, threads)?;
-        let clearance = raster.clearance(threads);
-        let mut narrows = narrows::find(&raster, &clearance);
+        let clearance = Clearance::new(&raster, threads);
+        let mut narrows = narrows::find(&raster, &clearance, threads);
         narrows.retain(|narrow| !narrow.is_at_solid(&raster));
         Some(Self { raster, clearance, narrows })
     }
@@ -152,29 +160,30 @@ pub fn find(
     });
     let parameters = evidence.parameters;
     let rules = Rules { openness: parameters.rooms_openness, least_area: parameters.rooms_min_area };
-    let mut cells = cells::find(raster, &bars, &rules);
-    let mut regions = regions(evidence, raster, clearance, &mut cells.regions, racked, squares);
+    let cells = cells::find(raster, &bars, &rules);
+    let (mut regions, numbers) = regions(evidence, raster, clearance, cells.regions, racked, squares);
     sort_by_rows(&mut regions);
     let mut order = vec![0; regions.len() + 1];
     for (n, region) in regions.iter().enumerate() {
         order[region.number as usize] = n;
     }
-    let doorways = doorways(raster, &cells.regions, cells.openings);
-    let fine = Fine::new(evidence.grid, raster, cells.regions, regions.len());
+    let doorways = doorways(raster, &numbers, cells.openings);
+    let fine = Fine::new(evidence.grid, raster, numbers, regions.len());
     let faces = faces(evidence, &fine, regions.len());
     let mut outlines = outlines::find(&fine, regions.len());
     let square = evidence.grid.frame.resolution.powi(2);
     let places: Vec<_> = regions.iter().map(|region| (region.place, region.pixels as f64)).collect();
+    let mut doors_of = vec![0; regions.len() + 1];
+    doorways.iter().flat_map(|door| door.between).for_each(|number| doors_of[number as usize] += 1);
     let mut labels: Vec<Label> = Vec::new();
     for (region, name) in regions.iter().zip(squares.names("R", &places)) {
         let number = region.number as usize;
-        let doors = doorways.iter().filter(|door| door.between.contains(&region.number)).count();
         let to_map = |place| evidence.grid.frame.to_metres(place).map(tidy);
         let rings = std::mem::take(&mut outlines[number]);
         let mut rings = rings.into_iter().map(|ring| ring.into_iter().map(to_map).collect());
         let area = tidy(fine.areas[number] as f64 * square);
         labels.push(Label::Region {
-            purpose: purpose(raster, region, doors, area),
+            purpose: purpose(raster, region, doors_of[number], area),
             faces: faces[number].clone(),
             polygon: rings.next().unwrap_or_default(),
             holes: rings.collect(),
@@ -208,11 +217,11 @@ pub fn find(
 fn regions(
     evidence: &Evidence,
     raster: &Raster,
-    clearance: &[u32],
-    numbers: &mut [u32],
+    clearance: &Clearance,
+    mut numbers: Runs,
     racked: &Racked,
     squares: &Squares,
-) -> Vec<Region> {
+) -> (Vec<Region>, Runs) {
     #[derive(Clone, Copy, Default)]
     struct Piece {
         region: u32,
@@ -220,16 +229,17 @@ fn regions(
         seen: usize,
         widest: u32,
     }
-    let pieces = raster.pieces(|pixel| numbers[pixel]);
-    let mut all = vec![Piece::default(); pieces.count + 1];
-    for (pixel, &number) in pieces.numbers.iter().enumerate().filter(|(_, number)| **number != 0) {
-        let piece = &mut all[number as usize];
-        piece.region = numbers[pixel];
-        piece.pixels += 1;
-        piece.seen += usize::from(raster.seen[pixel]);
-        piece.widest = piece.widest.max(clearance[pixel]);
-    }
-    let mut largest = std::collections::BTreeMap::new();
+    let (pieces, count) = numbers.pieces();
+    let mut all = vec![Piece::default(); count + 1];
+    clearance.over(raster, &numbers, evidence.threads, |n, own| {
+        let run = &numbers.all[n];
+        let piece = &mut all[pieces[n] as usize];
+        piece.region = run.number;
+        piece.pixels += run.len();
+        piece.seen += run.len() - raster.islands.filled.within(run);
+        piece.widest = piece.widest.max(own.iter().copied().max().unwrap_or(0));
+    });
+    let mut largest = BTreeMap::new();
     for (n, piece) in all.iter().enumerate().skip(1) {
         let best = largest.entry(piece.region).or_insert(n);
         if piece.pixels > all[*best].pixels {
@@ -240,7 +250,7 @@ fn regions(
     let looks = if racked.grounds.is_empty() {
         Vec::new()
     } else {
-        samples(&pieces.numbers, &all.iter().map(|piece| piece.pixels).collect::<Vec<_>>(), LOOKS)
+        samples(&numbers, |n| pieces[n], &all.iter().map(|piece| piece.pixels).collect::<Vec<_>>(), LOOKS)
     };
     let within_rack = |n: usize| {
         let on_rack = |pixel: &usize| {
@@ -261,46 +271,48 @@ fn regions(
             if stands { count } else { 0 }
         })
         .collect();
-    for (number, &piece) in numbers.iter_mut().zip(&pieces.numbers) {
-        *number = names[piece as usize];
-    }
-    cells::fill_cuts(raster, numbers);
+    numbers.all.iter_mut().zip(&pieces).for_each(|(run, &piece)| run.number = names[piece as usize]);
+    drop(pieces);
+    let numbers = fill_runs(raster, numbers);
     let mut regions: Vec<Region> =
         (1..=count).map(|number| Region { number, pixels: 0, at: 0, distances: 0.0, place: [0.0; 2] }).collect();
-    let mut start = 0;
-    for run in numbers.chunk_by(|a, b| a == b) {
-        let pixels = start..start + run.len();
-        start = pixels.end;
-        if run[0] != 0 {
-            let region = &mut regions[run[0] as usize - 1];
-            let own = &clearance[pixels.clone()];
-            let widest = own.iter().copied().max().unwrap_or(0);
-            if region.pixels == 0 || widest > clearance[region.at] {
-                region.at = pixels.start + own.iter().position(|&squared| squared == widest).unwrap_or(0);
-            }
-            region.pixels += run.len();
-            region.distances += own.iter().map(|&squared| f64::from(squared).sqrt()).sum::<f64>();
+    let mut widest = vec![0; regions.len()];
+    clearance.over(raster, &numbers, evidence.threads, |n, own| {
+        let run = &numbers.all[n];
+        let place = run.number as usize - 1;
+        let region = &mut regions[place];
+        let top = own.iter().copied().max().unwrap_or(0);
+        if region.pixels == 0 || top > widest[place] {
+            widest[place] = top;
+            region.at = run.pixels().start + own.iter().position(|&squared| squared == top).unwrap_or(0);
         }
-    }
+        region.pixels += run.len();
+        region.distances += own.iter().map(|&squared| f64::from(squared).sqrt()).sum::<f64>();
+    });
     let counts: Vec<usize> = std::iter::once(0).chain(regions.iter().map(|region| region.pixels)).collect();
-    for (region, pixels) in regions.iter_mut().zip(samples(numbers, &counts, SAMPLES).into_iter().skip(1)) {
+    for (region, pixels) in
+        regions.iter_mut().zip(samples(&numbers, |n| numbers.all[n].number, &counts, SAMPLES).into_iter().skip(1))
+    {
         region.place = middle(evidence, raster, &pixels, squares);
     }
-    regions
+    (regions, numbers)
 }
 
-/// Of the pixels of each number so many at most, evenly spaced; `counts` says how many there are of each.
-fn samples(numbers: &[u32], counts: &[usize], most: usize) -> Vec<Vec<usize>> {
+/// Of the pixels of each number so many at most, evenly spaced; `number` is that of each run, `counts` says how many pixels
+/// there are of each.
+fn samples(runs: &Runs, number: impl Fn(usize) -> u32, counts: &[usize], most: usize) -> Vec<Vec<usize>> {
     let steps: Vec<usize> = counts.iter().map(|count| count.div_ceil(most).max(1)).collect();
     let mut next = vec![0; counts.len()];
     let mut samples = vec![Vec::new(); counts.len()];
-    for (pixel, &number) in numbers.iter().enumerate().filter(|(_, number)| **number != 0) {
-        let number = number as usize;
-        if next[number] == 0 {
+    for (n, run) in runs.all.iter().enumerate() {
+        let number = number(n) as usize;
+        let pixels = run.pixels();
+        let mut pixel = pixels.start + next[number];
+        while pixel < pixels.end {
             samples[number].push(pixel);
-            next[number] = steps[number];
+            pixel += steps[number];
         }
-        next[number] -= 1;
+        next[number] = pixel - pixels.end;
     }
     samples
 }
@@ -328,8 +340,10 @@ fn sort_by_rows(regions: &mut [Region]) {
 }
 
 /// What is left between two different regions, each doorway once.
-fn doorways(raster: &Raster, numbers: &[u32], openings: Vec<[[f64; 2]; 2]>) -> Vec<Doorway> {
+fn doorways(raster: &Raster, numbers: &Runs, openings: Vec<[[f64; 2]; 2]>) -> Vec<Doorway> {
     let mut found: Vec<Doorway> = Vec::new();
+    // Between each pair of regions.
+    let mut known: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
     for ends in openings {
         let [ux, uy] = Bar { ends }.heading();
         let door = Doorway { between: [0; 2], ends };
@@ -338,7 +352,7 @@ fn doorways(raster: &Raster, numbers: &[u32], openings: Vec<[[f64; 2]; 2]>) -> V
             (2..=BESIDE)
                 .map(|n| side * f64::from(n))
                 .filter_map(|n| raster.at([x - uy * n, y + ux * n]))
-                .map(|pixel| numbers[pixel])
+                .map(|pixel| numbers.at(pixel))
                 .find(|&number| number != 0)
                 .unwrap_or(0)
         };
@@ -347,9 +361,12 @@ fn doorways(raster: &Raster, numbers: &[u32], openings: Vec<[[f64; 2]; 2]>) -> V
             continue;
         }
         let door = Doorway { between: [left.min(right), left.max(right)], ..door };
-        match found.iter_mut().find(|other| other.is_same(&door, raster.pixels(TOGETHER))) {
-            Some(other) => other.extend(&door),
-            None => found.push(door),
+        let between = known.entry(door.between).or_default();
+        if let Some(&n) = between.iter().find(|&&n| found[n].is_same(&door, raster.pixels(TOGETHER))) {
+            found[n].extend(&door);
+        } else {
+            between.push(found.len());
+            found.push(door);
         }
     }
     found

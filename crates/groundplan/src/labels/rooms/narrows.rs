@@ -1,7 +1,11 @@
 //! Narrows: where the free space is tighter than on both sides, whether or not a line leads there.
 
+use super::clearance::{self, Clearance};
 use super::gaps::Bar;
-use super::raster::{Raster, Sets};
+use super::raster::Raster;
+use super::runs::Sets;
+use crate::bands::map_each;
+use std::ops::Range;
 
 /// A narrow is at most this share as wide as the tighter of the two places that it joins.
 const NARROW: f64 = 0.85;
@@ -11,145 +15,195 @@ const WIDTHS: (f64, f64) = (0.3, 4.0);
 const TOUCH: f64 = 1.6;
 /// and so far from side by side, as the cosine of the angle between them.
 const OPPOSITE: f64 = -0.3;
+/// A large raster is looked at by squares of so many pixels, each with so much around it, metres, as a narrow and the
+/// places that it joins may take.
+const SQUARE: usize = 2048;
+const AROUND: f64 = 8.0;
 
-/// Straight closures of all narrows, in the order of the places that they part.
-pub fn find(raster: &Raster, clearance: &[u32]) -> Vec<Bar> {
-    let basins = basins(raster, clearance);
-    let mut borders: Vec<(u32, u32, usize)> = Vec::new();
-    for pixel in (0..basins.len()).filter(|&pixel| basins[pixel] != 0) {
-        for beside in [pixel + 1, pixel + raster.width] {
-            let (a, b) = (basins[pixel], basins[beside]);
-            if b != 0 && a != b {
-                borders.push((a.min(b), a.max(b), if a < b { pixel } else { beside }));
-            }
-        }
+/// Straight closures of all narrows, in the order of the places that they part; on a large raster, square by square.
+pub fn find(raster: &Raster, clearance: &Clearance, threads: usize) -> Vec<Bar> {
+    if let Some(clearance) = clearance.whole() {
+        return Window { clearance, width: raster.width }.narrows(raster).into_iter().map(|(_, bar)| bar).collect();
     }
-    borders.sort_unstable();
-    borders.dedup();
-    let widths = [WIDTHS.0, WIDTHS.1].map(|metres| raster.pixels(metres));
-    borders
-        .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
-        .flat_map(|border| openings(raster, clearance, border))
-        .filter(|&pixel| (widths[0]..=widths[1]).contains(&(2.0 * f64::from(clearance[pixel]).sqrt())))
-        .filter_map(|pixel| closure(raster, clearance, pixel))
-        .collect()
+    let around = raster.pixels(AROUND).ceil() as usize;
+    let parts = |size: usize| (0..size).step_by(SQUARE).map(move |from| from..(from + SQUARE).min(size));
+    let squares: Vec<[Range<usize>; 2]> =
+        parts(raster.height).flat_map(|rows| parts(raster.width).map(move |columns| [columns, rows.clone()])).collect();
+    let wider = |range: &Range<usize>, size: usize| range.start.saturating_sub(around)..(range.end + around).min(size);
+    map_each(squares.len(), threads, |n| {
+        let [columns, rows] = &squares[n];
+        let window = [wider(columns, raster.width), wider(rows, raster.height)];
+        let [left, low] = [0, 1].map(|axis| window[axis].start);
+        let width = window[0].len();
+        let clearance = clearance::within(raster, window, 1);
+        let found = Window { clearance: &clearance, width }.narrows(raster).into_iter();
+        let own = found
+            .filter(|(pixel, _)| columns.contains(&(pixel % width + left)) && rows.contains(&(pixel / width + low)));
+        own.map(|(_, Bar { ends })| Bar { ends: ends.map(|[x, y]| [x + left as f64, y + low as f64]) })
+            .collect::<Vec<_>>()
+    })
+    .concat()
 }
 
-/// The basins of the clearance: places that a narrow parts from all others (watershed, with basins joined where the
-/// way between them is hardly tighter than the tighter of the two).
-fn basins(raster: &Raster, clearance: &[u32]) -> Vec<u32> {
-    let mut sets = Sets::new(1);
-    let mut tops = vec![0u32];
-    let mut basins = vec![0u32; raster.free.len()];
-    for pixel in by_clearance(raster, clearance) {
-        let pixel = pixel as usize;
-        let mut here = 0;
-        for beside in raster.around(pixel) {
-            if basins[beside] == 0 || basins[beside] == here {
-                continue;
-            }
-            let other = sets.of(basins[beside]);
-            if here == 0 || here == other {
-                here = other;
-                continue;
-            }
-            let rank = |set: u32| (tops[set as usize], u32::MAX - set);
-            let (wide, tight) = if rank(here) > rank(other) { (here, other) } else { (other, here) };
-            if f64::from(clearance[pixel]) >= NARROW * NARROW * f64::from(tops[tight as usize]) {
-                sets.join(wide, tight);
-            }
-            here = wide;
-        }
-        if here == 0 {
-            here = sets.add();
-            tops.push(clearance[pixel]);
-        }
-        basins[pixel] = here;
-    }
-    for basin in &mut basins {
-        *basin = sets.of(*basin);
-    }
-    basins
+/// Part of the free space, with a border that is none of it.
+struct Window<'a> {
+    /// Squared distance of each pixel to the nearest that is not free; 0 for these.
+    clearance: &'a [u32],
+    width: usize,
 }
 
-/// Free pixels from the widest place to the tightest (a counting sort).
-fn by_clearance(raster: &Raster, clearance: &[u32]) -> Vec<u32> {
-    let top = clearance.iter().copied().max().unwrap_or(0) as usize;
-    let mut starts = vec![0usize; top + 2];
-    let free = || raster.free.iter().zip(clearance).enumerate().filter(|(_, (free, _))| **free);
-    free().for_each(|(_, (_, &squared))| starts[top - squared as usize + 1] += 1);
-    for n in 1..starts.len() {
-        starts[n] += starts[n - 1];
-    }
-    let mut order = vec![0; starts[top + 1]];
-    for (pixel, (_, &squared)) in free() {
-        let start = &mut starts[top - squared as usize];
-        order[*start] = pixel as u32;
-        *start += 1;
-    }
-    order
-}
-
-/// The widest pixel of each connected piece of the border between two basins.
-fn openings(raster: &Raster, clearance: &[u32], border: &[(u32, u32, usize)]) -> Vec<usize> {
-    let mut seen = vec![false; border.len()];
-    let mut found = Vec::new();
-    for first in 0..border.len() {
-        if seen[first] {
-            continue;
-        }
-        seen[first] = true;
-        let mut stack = vec![first];
-        let mut best = border[first].2;
-        while let Some(n) = stack.pop() {
-            let pixel = border[n].2;
-            if (clearance[pixel], usize::MAX - pixel) > (clearance[best], usize::MAX - best) {
-                best = pixel;
-            }
-            // A border may skip a pixel where it changes sides.
-            for dy in 0..5 {
-                let row = (pixel + dy * raster.width).wrapping_sub(2 * raster.width + 2);
-                let from = border.partition_point(|entry| entry.2 < row);
-                for (m, _) in border.iter().enumerate().skip(from).take_while(|(_, entry)| entry.2 < row + 5) {
-                    if !seen[m] {
-                        seen[m] = true;
-                        stack.push(m);
-                    }
+impl Window<'_> {
+    /// The pixel in the middle of each narrow and its closure.
+    fn narrows(&self, raster: &Raster) -> Vec<(usize, Bar)> {
+        let Self { clearance, width } = *self;
+        let basins = self.basins();
+        let mut borders: Vec<(u32, u32, usize)> = Vec::new();
+        for pixel in (0..basins.len()).filter(|&pixel| basins[pixel] != 0) {
+            for beside in [pixel + 1, pixel + width] {
+                let (a, b) = (basins[pixel], basins[beside]);
+                if b != 0 && a != b {
+                    borders.push((a.min(b), a.max(b), if a < b { pixel } else { beside }));
                 }
             }
         }
-        found.push(best);
+        borders.sort_unstable();
+        borders.dedup();
+        let widths = [WIDTHS.0, WIDTHS.1].map(|metres| raster.pixels(metres));
+        borders
+            .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
+            .flat_map(|border| self.openings(border))
+            .filter(|&pixel| (widths[0]..=widths[1]).contains(&(2.0 * f64::from(clearance[pixel]).sqrt())))
+            .filter_map(|pixel| self.closure(pixel).map(|bar| (pixel, bar)))
+            .collect()
     }
-    found
-}
 
-/// From the nearest pixel that is not free to the nearest one across.
-fn closure(raster: &Raster, clearance: &[u32], pixel: usize) -> Option<Bar> {
-    let reach = f64::from(clearance[pixel]).sqrt() + TOUCH;
-    let (cx, cy) = ((pixel % raster.width) as i64, (pixel / raster.width) as i64);
-    let span = reach.ceil() as i64;
-    let mut touched: Vec<(i64, i64, i64)> = Vec::new();
-    for y in (cy - span).max(0)..=(cy + span).min(raster.height as i64 - 1) {
-        for x in (cx - span).max(0)..=(cx + span).min(raster.width as i64 - 1) {
-            let squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
-            if squared as f64 <= reach * reach && !raster.free[y as usize * raster.width + x as usize] {
-                touched.push((squared, x, y));
+    /// The basins of the clearance: places that a narrow parts from all others (watershed, with basins joined where the
+    /// way between them is hardly tighter than the tighter of the two).
+    fn basins(&self) -> Vec<u32> {
+        let clearance = self.clearance;
+        let mut sets = Sets::new(1);
+        let mut tops = vec![0u32];
+        let mut basins = vec![0u32; clearance.len()];
+        for pixel in self.by_clearance() {
+            let pixel = pixel as usize;
+            let mut here = 0;
+            for beside in self.around(pixel) {
+                if basins[beside] == 0 || basins[beside] == here {
+                    continue;
+                }
+                let other = sets.of(basins[beside]);
+                if here == 0 || here == other {
+                    here = other;
+                    continue;
+                }
+                let rank = |set: u32| (tops[set as usize], u32::MAX - set);
+                let (wide, tight) = if rank(here) > rank(other) { (here, other) } else { (other, here) };
+                if f64::from(clearance[pixel]) >= NARROW * NARROW * f64::from(tops[tight as usize]) {
+                    sets.join(wide, tight);
+                }
+                here = wide;
+            }
+            if here == 0 {
+                here = sets.add();
+                tops.push(clearance[pixel]);
+            }
+            basins[pixel] = here;
+        }
+        for basin in &mut basins {
+            *basin = sets.of(*basin);
+        }
+        basins
+    }
+
+    /// Free pixels from the widest place to the tightest (a counting sort).
+    fn by_clearance(&self) -> Vec<u32> {
+        let clearance = self.clearance;
+        let top = clearance.iter().copied().max().unwrap_or(0) as usize;
+        let mut starts = vec![0usize; top + 2];
+        let free = || clearance.iter().enumerate().filter(|(_, squared)| **squared != 0);
+        free().for_each(|(_, &squared)| starts[top - squared as usize + 1] += 1);
+        for n in 1..starts.len() {
+            starts[n] += starts[n - 1];
+        }
+        let mut order = vec![0; starts[top + 1]];
+        for (pixel, &squared) in free() {
+            let start = &mut starts[top - squared as usize];
+            order[*start] = pixel as u32;
+            *start += 1;
+        }
+        order
+    }
+
+    /// The widest pixel of each connected piece of the border between two basins.
+    fn openings(&self, border: &[(u32, u32, usize)]) -> Vec<usize> {
+        let Self { clearance, width } = *self;
+        let mut seen = vec![false; border.len()];
+        let mut found = Vec::new();
+        for first in 0..border.len() {
+            if seen[first] {
+                continue;
+            }
+            seen[first] = true;
+            let mut stack = vec![first];
+            let mut best = border[first].2;
+            while let Some(n) = stack.pop() {
+                let pixel = border[n].2;
+                if (clearance[pixel], usize::MAX - pixel) > (clearance[best], usize::MAX - best) {
+                    best = pixel;
+                }
+                // A border may skip a pixel where it changes sides.
+                for dy in 0..5 {
+                    let row = (pixel + dy * width).wrapping_sub(2 * width + 2);
+                    let from = border.partition_point(|entry| entry.2 < row);
+                    for (m, _) in border.iter().enumerate().skip(from).take_while(|(_, entry)| entry.2 < row + 5) {
+                        if !seen[m] {
+                            seen[m] = true;
+                            stack.push(m);
+                        }
+                    }
+                }
+            }
+            found.push(best);
+        }
+        found
+    }
+
+    /// From the nearest pixel that is not free to the nearest one across.
+    fn closure(&self, pixel: usize) -> Option<Bar> {
+        let Self { clearance, width } = *self;
+        let height = clearance.len() / width;
+        let reach = f64::from(clearance[pixel]).sqrt() + TOUCH;
+        let (cx, cy) = ((pixel % width) as i64, (pixel / width) as i64);
+        let span = reach.ceil() as i64;
+        let mut touched: Vec<(i64, i64, i64)> = Vec::new();
+        for y in (cy - span).max(0)..=(cy + span).min(height as i64 - 1) {
+            for x in (cx - span).max(0)..=(cx + span).min(width as i64 - 1) {
+                let squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
+                if squared as f64 <= reach * reach && clearance[y as usize * width + x as usize] == 0 {
+                    touched.push((squared, x, y));
+                }
             }
         }
-    }
-    touched.sort_unstable();
-    let &(squared, ax, ay) = touched.first()?;
-    let nearest = (squared as f64).sqrt();
-    let mut best: Option<(f64, [f64; 2])> = None;
-    for &(squared, x, y) in &touched {
-        let distance = (squared as f64).sqrt();
-        let cosine = ((ax - cx) * (x - cx) + (ay - cy) * (y - cy)) as f64 / (nearest * distance).max(1e-9);
-        let cost = cosine + 0.3 * (distance - nearest) / nearest.max(1.0);
-        if cosine < OPPOSITE && best.is_none_or(|(least, _)| cost < least) {
-            best = Some((cost, [x as f64, y as f64]));
+        touched.sort_unstable();
+        let &(squared, ax, ay) = touched.first()?;
+        let nearest = (squared as f64).sqrt();
+        let mut best: Option<(f64, [f64; 2])> = None;
+        for &(squared, x, y) in &touched {
+            let distance = (squared as f64).sqrt();
+            let cosine = ((ax - cx) * (x - cx) + (ay - cy) * (y - cy)) as f64 / (nearest * distance).max(1e-9);
+            let cost = cosine + 0.3 * (distance - nearest) / nearest.max(1.0);
+            if cosine < OPPOSITE && best.is_none_or(|(least, _)| cost < least) {
+                best = Some((cost, [x as f64, y as f64]));
+            }
         }
+        let (p, q) = ([ax as f64, ay as f64], best?.1);
+        let [ux, uy] = Bar { ends: [p, q] }.heading();
+        Some(Bar { ends: [[p[0] + ux, p[1] + uy], [q[0] - ux, q[1] - uy]] })
     }
-    let (p, q) = ([ax as f64, ay as f64], best?.1);
-    let [ux, uy] = Bar { ends: [p, q] }.heading();
-    Some(Bar { ends: [[p[0] + ux, p[1] + uy], [q[0] - ux, q[1] - uy]] })
+
+    /// The eight pixels around a pixel that is not on the border.
+    fn around(&self, pixel: usize) -> [usize; 8] {
+        let (below, above) = (pixel - self.width, pixel + self.width);
+        [below - 1, below, below + 1, pixel - 1, pixel + 1, above - 1, above, above + 1]
+    }
 }

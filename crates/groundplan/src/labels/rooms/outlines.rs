@@ -1,6 +1,7 @@
 //! Outlines of regions: along the borders of their pixels, the same on both sides of a border, and simplified by less
 //! than what lies between two borders, so that no two outlines cross.
 
+use super::bits::Bits;
 use super::fine::Fine;
 use crate::labels::outline::area;
 
@@ -16,24 +17,21 @@ type Rings = Vec<Vec<[f64; 2]>>;
 
 /// The rings around each region by its number, the outer one first, counter-clockwise, then its holes.
 pub fn find(fine: &Fine, count: usize) -> Vec<Rings> {
-    let width = fine.width;
     let mut rings: Vec<Rings> = vec![Vec::new(); count + 1];
     // Every ring has a pixel whose lower side is on it.
-    let mut seen = vec![false; fine.numbers.len()];
-    for y in 1..fine.height {
-        let (below, row) = fine.numbers[(y - 1) * width..(y + 1) * width].split_at(width);
-        for x in (0..width).filter(|&x| row[x] != below[x] && row[x] != 0) {
-            let pixel = y * width + x;
-            if !seen[pixel] {
-                let ring = Tracer { fine, region: row[x] }.trace((pixel, 0), &mut seen);
+    let mut seen = Bits::new(fine.width * fine.height);
+    fine.numbers.lower_sides(|run, pixels| {
+        for pixel in pixels {
+            if !seen.get(pixel) {
+                let ring = Tracer { fine, region: run.number }.trace((pixel, 0), &mut seen);
                 let ring: Vec<[f64; 2]> =
                     simplify(&ring).into_iter().map(|[x, y]| fine.to_grid([x as f64 / 2.0, y as f64 / 2.0])).collect();
                 if ring.len() >= 3 {
-                    rings[row[x] as usize].push(ring);
+                    rings[run.number as usize].push(ring);
                 }
             }
         }
-    }
+    });
     for rings in &mut rings {
         let outer = (0..rings.len()).max_by(|&a, &b| area(&rings[a]).total_cmp(&area(&rings[b])).then(b.cmp(&a)));
         if let Some(outer) = outer {
@@ -74,11 +72,13 @@ impl Tracer<'_> {
         }
     }
 
-    fn trace(&self, start: (usize, u8), seen: &mut [bool]) -> Vec<Node> {
+    fn trace(&self, start: (usize, u8), seen: &mut Bits) -> Vec<Node> {
         let mut ring = Vec::new();
         let mut at = start;
         loop {
-            seen[at.0] |= at.1 == 0;
+            if at.1 == 0 {
+                seen.insert(at.0);
+            }
             let [middle, end] = self.points(at);
             ring.push((middle, false));
             let (pixel, side) = at;
@@ -87,7 +87,7 @@ impl Tracer<'_> {
             let left = self.beside(pixel, turn);
             let out = self.beside(pixel, side);
             let right = self.beside(out, turn);
-            let [l, o, r] = [left, out, right].map(|p| self.fine.numbers[p]);
+            let [l, o, r] = [left, out, right].map(|p| self.fine.numbers.at(p));
             let here = self.region;
             let (straight, turn_left, turn_right) = ((left, side), (pixel, turn), (right, (side + 3) % 4));
             let (next, is_node) = match (l == here, r == here) {

@@ -1,0 +1,77 @@
+//! A bit for each pixel of a raster, row after row without gaps.
+
+use std::ops::Range;
+
+/// Pixels that are looked at together.
+pub const WORD: usize = 64;
+
+/// A set of pixels.
+#[derive(Default)]
+pub struct Bits(Vec<u64>);
+
+impl Bits {
+    /// So many pixels, none of them in the set.
+    pub fn new(pixels: usize) -> Self {
+        // One word more: what begins in the last one is read across its end.
+        Self(vec![0; pixels / WORD + 2])
+    }
+
+    pub fn get(&self, pixel: usize) -> bool {
+        self.0[pixel / WORD] >> (pixel % WORD) & 1 == 1
+    }
+
+    pub fn insert(&mut self, pixel: usize) {
+        self.0[pixel / WORD] |= 1 << (pixel % WORD);
+    }
+
+    /// The pixels from one on, the first in the lowest bit.
+    pub fn word(&self, pixel: usize) -> u64 {
+        let (word, shift) = (pixel / WORD, pixel % WORD);
+        let above = if shift == 0 { 0 } else { self.0[word + 1] << (WORD - shift) };
+        self.0[word] >> shift | above
+    }
+
+    /// Adds the lowest bits of a word, from a pixel on.
+    pub fn add(&mut self, pixel: usize, bits: u64) {
+        let (word, shift) = (pixel / WORD, pixel % WORD);
+        self.0[word] |= bits << shift;
+        if shift != 0 {
+            self.0[word + 1] |= bits >> (WORD - shift);
+        }
+    }
+
+    /// Adds pixels one after another.
+    pub fn fill(&mut self, pixels: Range<usize>) {
+        for at in pixels.clone().step_by(WORD) {
+            self.add(at, lowest(pixels.end - at));
+        }
+    }
+
+    /// Runs of pixels in the set, or of those that are not, among some pixels.
+    pub fn runs(&self, pixels: Range<usize>, wanted: bool) -> impl Iterator<Item = Range<usize>> + '_ {
+        let mut at = pixels.start;
+        std::iter::from_fn(move || {
+            let from = self.next(at, pixels.end, wanted);
+            at = self.next(from, pixels.end, !wanted);
+            (from < at).then_some(from..at)
+        })
+    }
+
+    /// The next pixel that is in the set, or that is not, from one on; or the end.
+    fn next(&self, mut at: usize, end: usize, wanted: bool) -> usize {
+        while at < end {
+            let word = self.0[at / WORD] ^ if wanted { 0 } else { u64::MAX };
+            let ahead = (word >> (at % WORD)).trailing_zeros() as usize;
+            if ahead < WORD {
+                return (at + ahead).min(end);
+            }
+            at = (at / WORD + 1) * WORD;
+        }
+        end
+    }
+}
+
+/// So many of a word's lowest bits.
+pub fn lowest(count: usize) -> u64 {
+    if count >= WORD { u64::MAX } else { (1 << count) - 1 }
+}
