@@ -9,6 +9,7 @@ __all__ = [
     "find_adjacency",
     "find_directions",
     "find_gradients",
+    "find_gradients_in",
     "find_labels",
     "find_lines",
     "find_occupancy",
@@ -16,8 +17,10 @@ __all__ = [
     "find_response",
     "find_walls",
     "problems",
+    "reach",
     "resolve",
     "subdivide",
+    "sum_faces",
     "survey",
     "table",
     "version",
@@ -72,9 +75,26 @@ def survey(
     layout: _Layout,
     parameters: _Record,
     threads: int,
-    directions: _Record | None = None,
-    lines: _Record | None = None,
+    given: _Record,
+    keep: bool,
 ) -> _Record: ...
+def find_gradients_in(
+    layout: _Layout,
+    held: tuple[int, int],
+    rows: tuple[int, int],
+    columns: tuple[int, int],
+    parameters: _Record,
+    threads: int,
+) -> _Record: ...
+def reach(layout: _Layout, parameters: _Record) -> int: ...
+def sum_faces(
+    layout: _Layout,
+    held: tuple[int, int],
+    rows: tuple[int, int],
+    directions: _Record,
+    lines: _Record,
+    threads: int,
+) -> npt.NDArray[np.int64]: ...
 def find_gradients(layout: _Layout, parameters: _Record, threads: int) -> _Record: ...
 def find_directions(layout: _Layout, gradients: _Record, parameters: _Record) -> _Record: ...
 def find_radiograms(layout: _Layout, gradients: _Record, directions: _Record, parameters: _Record) -> list[_Record]: ...

@@ -35,11 +35,8 @@ from groundplan.stages import (
     Subdivision,
     Walls,
     cores,
-    find_directions,
-    find_gradients,
     layout,
     made,
-    needs,
     run,
     taken,
 )
@@ -215,6 +212,47 @@ class Survey(Stage):
             of another size.
         """
         return self._queries.route(a, b, clearance, self.__dict__.get("_map") if map is None else map)
+
+    @overload
+    def update(self, change: Map, *, threads: int | None = None) -> Survey: ...
+    @overload
+    def update(self, change: npt.ArrayLike, row: int, column: int, *, threads: int | None = None) -> Survey: ...
+    def update(
+        self, change: Any, row: int | None = None, column: int | None = None, *, threads: int | None = None
+    ) -> Survey:
+        """The survey of the map after a change, with the bytes that a survey of the whole map has.
+
+        Gradients are found again around the change alone; what follows from them, from the directions on, is made anew.
+        This survey and its map stay as they are.
+
+        Parameters
+        ----------
+        change : (H, W) uint8, int8 or bool, or Map
+            What the map has now from `row` and `column` on, its rows in the order of an array that `groundplan.survey`
+            takes: uint8 are values of the map's own pixels, the top row first; int8 the data of a
+            map_msgs/OccupancyGridUpdate (-1, 0..100), the lowest row first; bool is occupied or not, the top row first.
+            Or the whole map anew, which is compared with the one before.
+        row, column
+            Where the patch's first pixel goes. Rows are counted as the patch has them: from the map's top row, of int8
+            from its lowest one, as ``y`` of the message; columns from the left, as its ``x``.
+        threads
+            At most so many; all cores by default.
+
+        Returns
+        -------
+        Survey
+            To be updated in its turn; what `groundplan.survey` was given beside the map still holds. A patch does not
+            change how pixels are read, nor the warnings of that; another map brings its own.
+
+        Raises
+        ------
+        ParameterError
+            ``update.map`` for a survey that has no map, because it was read from a file or copied; ``update.patch`` for
+            what is no patch, does not lie in the map, or has values that no pixel of the map can have.
+        """
+        from groundplan._update import update
+
+        return update(self, change, row, column, threads)
 
     def to_dict(self) -> dict[str, Any]:
         """The survey as the format has it: plain lists and numbers."""
@@ -447,6 +485,7 @@ def survey(
     directions: Directions | None = None,
     lines: Lines | None = None,
     threads: int | None = None,
+    keep: bool = False,
     **parameters: Any,
 ) -> Survey:
     """Survey a map: all stages in a row.
@@ -462,6 +501,8 @@ def survey(
         Results of your own in place of these stages'. Lines without directions are of those that are found.
     threads
         At most so many; all cores by default. Any number gives the same survey.
+    keep
+        Keep the gradients for `Survey.update`, 13 bytes for each edge pixel; the first update finds them again if not.
     **parameters
         By the table's names, with an underscore for the dot: ``lines_snr=4``.
 
@@ -478,15 +519,26 @@ def survey(
         if resolution is None:
             raise MapError("map.resolution", "an array needs its resolution", "survey(array, resolution=0.05)")
         map = from_array(np.asarray(map), resolution, tuple(origin))
-    if lines is not None and directions is None:
-        needs(Lines, "lines", lines)
-        gradients = find_gradients(map, threads=threads, **parameters)
-        directions = find_directions(map, gradients, **parameters)
-    given = (
-        None if directions is None else taken(Directions, "directions", directions),
-        None if lines is None else taken(Lines, "lines", lines),
-    )
-    found = run(_core.survey, layout(map), named(parameters), cores(threads), *given)
+    stages = (("directions", Directions, directions), ("lines", Lines, lines))
+    own = {name: taken(kind, name, value) for name, kind, value in stages if value is not None}
+    return surveyed(map, parameters, threads, own, {}, keep=keep)
+
+
+def surveyed(
+    map: Map,
+    parameters: dict[str, Any],
+    threads: int | None,
+    own: dict[str, Any],
+    parts: dict[str, Any],
+    *,
+    keep: bool,
+) -> Survey:
+    """The survey of a map, over stages of the caller's own and over parts that are known, both as the core has them."""
+    grid, values = layout(map), named(parameters)
+    if "lines" in own and "directions" not in own:
+        edges = parts.get("gradients") or run(_core.find_gradients, grid, values, cores(threads))
+        parts = parts | {"gradients": edges, "directions": run(_core.find_directions, grid, edges, values)}
+    found = run(_core.survey, grid, values, cores(threads), own | parts, keep)
     stages = {
         "directions": Directions,
         "lines": Lines,
@@ -504,7 +556,8 @@ def survey(
         warnings=[*map.warnings, *(MapWarning(code, message) for code, message in found["warnings"])],
         **{name: made(kind, found[name]) for name, kind in stages.items()},
     )
-    survey.__dict__["_map"] = map  # for its routes, and no part of what it is
+    # For its routes and its updates, and no part of what it is.
+    survey.__dict__.update(_map=map, _own=own, _gradients=found["gradients"])
     return survey
 
 

@@ -10,9 +10,10 @@ use groundplan::occupancy::Occupancy;
 use groundplan::parameters::{Parameter, Range};
 use groundplan::radiograms::Radiogram;
 use groundplan::subdivision::Subdivision;
+use groundplan::sums::{FaceSums, Sums};
 use groundplan::walls::{Wall, WallKind, Walls};
 use groundplan::wavelets::Response;
-use groundplan::{Frame, Grid, Label, ParameterError, Parameters, State, Table, Value};
+use groundplan::{Frame, Given, Grid, Label, ParameterError, Parameters, State, Table, Value};
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -40,12 +41,50 @@ impl Layout<'_> {
     /// Runs a stage over the pixels where they lie, with Python's lock released.
     pub fn with_grid<T: Send>(&self, py: Python<'_>, stage: impl FnOnce(&Grid) -> T + Send) -> PyResult<T> {
         let pixels = self.0.as_slice()?;
+        let table = self.table()?;
+        let grid = Grid::new(pixels, self.1, &table, self.frame());
+        Ok(py.detach(|| stage(&grid)))
+    }
+}
+
+/// Rows of a grid that are at hand, counted from the bottom: the map's height, and the lowest row of those.
+type Held = (usize, usize);
+
+/// From, to.
+type Span = (usize, usize);
+
+impl Layout<'_> {
+    /// Runs a stage over some rows and columns of a map, of which only the layout's rows are at hand; the stage needs
+    /// those within `reach` of the rows.
+    pub fn with_part<T: Send>(
+        &self,
+        py: Python<'_>,
+        (height, first): Held,
+        [rows, columns]: [Span; 2],
+        reach: impl FnOnce(&Frame) -> usize,
+        stage: impl FnOnce(&Grid, [std::ops::Range<usize>; 2]) -> T + Send,
+    ) -> PyResult<T> {
+        let shape = self.0.as_array().dim();
+        let held = first..first.saturating_add(shape.0);
+        let frame = Frame::new(shape.1, height, self.4, self.5);
+        let reach = reach(&frame);
+        let within = |(from, to): Span, end: usize| from <= to && to <= end;
+        let sees = rows.0.saturating_sub(reach) >= held.start && rows.1.saturating_add(reach).min(height) <= held.end;
+        demand(
+            held.end <= height && within(rows, height) && within(columns, shape.1) && sees,
+            "the rows asked for are not at hand",
+        )?;
+        let pixels = self.0.as_slice()?;
+        let table = self.table()?;
+        let grid = Grid::part(pixels, self.1, &table, frame, held);
+        Ok(py.detach(|| stage(&grid, [rows.0..rows.1, columns.0..columns.1])))
+    }
+
+    fn table(&self) -> PyResult<Table> {
         let (values, states) = (self.2.as_slice()?, self.3.as_slice()?);
         let values: &[i8; 256] = values.try_into().map_err(|_| PyValueError::new_err("256 values"))?;
         let states: &[u8; 256] = states.try_into().map_err(|_| PyValueError::new_err("256 states"))?;
-        let table = Table::new(values, states);
-        let grid = Grid::new(pixels, self.1, &table, self.frame());
-        Ok(py.detach(|| stage(&grid)))
+        Ok(Table::new(values, states))
     }
 }
 
@@ -118,6 +157,52 @@ pub fn demand_directions(lines: &Lines, directions: &Directions) -> PyResult<()>
 pub fn demand_grid(gradients: &Gradients, frame: &Frame) -> PyResult<()> {
     let inside = |p: &[u32; 2]| (p[0] as usize) < frame.width && (p[1] as usize) < frame.height;
     demand(gradients.pixels.iter().all(inside), "the gradients have pixels outside this map")
+}
+
+/// A row for each face: percent, unknown, free and pixels of the pixels within it, then of the one under a sliver.
+pub fn from_sums<'py>(py: Python<'py>, made: &FaceSums) -> PyResult<Bound<'py, PyArray2<i64>>> {
+    let row = |sums: &Sums| [sums.percent, sums.unknown, sums.free, sums.pixels];
+    let rows: Vec<i64> = made.within.iter().zip(&made.under).flat_map(|(a, b)| [row(a), row(b)]).flatten().collect();
+    PyArray1::from_vec(py, rows).reshape([made.within.len(), 8])
+}
+
+fn sums(array: &Bound<'_, PyAny>) -> PyResult<FaceSums> {
+    let array = array.cast::<PyArray2<i64>>()?.readonly();
+    let array = array.as_array();
+    demand(array.ncols() == 8, "the sums have not 8 columns")?;
+    let columns = |from: usize| {
+        let sums = |row: numpy::ndarray::ArrayView1<'_, i64>| Sums {
+            percent: row[from],
+            unknown: row[from + 1],
+            free: row[from + 2],
+            pixels: row[from + 3],
+        };
+        array.rows().into_iter().map(sums).collect()
+    };
+    let made = FaceSums { within: columns(0), under: columns(4) };
+    demand(made.evidence().all(|sums| sums.pixels > 0), "the sums are not those of all rows")?;
+    Ok(made)
+}
+
+/// The stages that are given, by their names.
+pub fn given(dict: &Bound<'_, PyDict>, frame: &Frame) -> PyResult<Given> {
+    let record = |name: &str| -> PyResult<Option<Bound<'_, PyDict>>> {
+        dict.get_item(name)?.map(|item| item.cast_into().map_err(Into::into)).transpose()
+    };
+    let given = Given {
+        gradients: record("gradients")?.as_ref().map(gradients).transpose()?,
+        directions: record("directions")?.as_ref().map(directions).transpose()?,
+        lines: record("lines")?.as_ref().map(lines).transpose()?,
+        sums: dict.get_item("sums")?.as_ref().map(sums).transpose()?,
+    };
+    if let Some(lines) = &given.lines {
+        let none = Directions::default();
+        demand_directions(lines, given.directions.as_ref().unwrap_or(&none))?;
+    }
+    if let Some(gradients) = &given.gradients {
+        demand_grid(gradients, frame)?;
+    }
+    Ok(given)
 }
 
 /// Measures and the subdivision that they are of.

@@ -12,11 +12,9 @@ mod _core {
     use crate::convert::{self, Layout, Named};
     #[pymodule_export]
     use crate::queries::{Locator, Ways};
-    use groundplan::directions::Directions;
-    use groundplan::{
-        Given, TABLE, adjacency, arrangement, directions, gradients, labels, lines, occupancy, radiograms,
-    };
-    use groundplan::{subdivision::Subdivision, walls};
+    use groundplan::{Frame, subdivision::Subdivision, sums::FaceSums, walls};
+    use groundplan::{TABLE, adjacency, arrangement, directions, gradients, labels, lines, occupancy, radiograms};
+    use numpy::PyArray2;
     use pyo3::prelude::*;
     use pyo3::types::PyDict;
 
@@ -38,28 +36,22 @@ mod _core {
         convert::values(py, &convert::parameters(parameters)?)
     }
 
-    /// All stages in a row.
+    /// All stages in a row, but for those that are given; the gradients are kept where they will be wanted again.
     #[pyfunction]
-    #[pyo3(signature = (layout, parameters, threads, directions=None, lines=None))]
     fn survey<'py>(
         py: Python<'py>,
         layout: Layout<'py>,
         parameters: &Bound<'py, PyDict>,
         threads: usize,
-        directions: Option<&Bound<'py, PyDict>>,
-        lines: Option<&Bound<'py, PyDict>>,
+        given: &Bound<'py, PyDict>,
+        keep: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let parameters = convert::parameters(parameters)?;
-        let given = Given {
-            directions: directions.map(convert::directions).transpose()?,
-            lines: lines.map(convert::lines).transpose()?,
-        };
-        if let Some(lines) = &given.lines {
-            let none = Directions::default();
-            convert::demand_directions(lines, given.directions.as_ref().unwrap_or(&none))?;
-        }
+        let given = convert::given(given, &layout.frame())?;
         let made = layout.with_grid(py, |grid| groundplan::survey(grid, &parameters, given, threads))?;
+        let gradients = keep.then_some(made.gradients).map(|kept| convert::from_gradients(py, kept)).transpose()?;
         Ok(Named::new(py)
+            .with("gradients", gradients)?
             .with("directions", convert::from_directions(py, made.directions)?)?
             .with("radiograms", convert::from_radiograms(py, &made.radiograms)?)?
             .with("lines", convert::from_lines(py, made.lines)?)?
@@ -84,6 +76,31 @@ mod _core {
         let parameters = convert::parameters(parameters)?;
         let made = layout.with_grid(py, |grid| gradients::find_gradients(grid, &parameters, threads))?;
         convert::from_gradients(py, made)
+    }
+
+    /// II-A: oriented gradients of some rows and columns of a map, of which only the layout's rows are at hand.
+    #[pyfunction]
+    fn find_gradients_in<'py>(
+        py: Python<'py>,
+        layout: Layout<'py>,
+        held: (usize, usize),
+        rows: (usize, usize),
+        columns: (usize, usize),
+        parameters: &Bound<'py, PyDict>,
+        threads: usize,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let parameters = convert::parameters(parameters)?;
+        let reach = |frame: &Frame| gradients::reach(frame, &parameters);
+        let made = layout.with_part(py, held, [rows, columns], reach, |grid, [rows, columns]| {
+            gradients::find_gradients_in(grid, rows, columns, &parameters, threads)
+        })?;
+        convert::from_gradients(py, made)
+    }
+
+    /// How far a pixel bears on gradients around it, pixels.
+    #[pyfunction]
+    fn reach(layout: Layout<'_>, parameters: &Bound<'_, PyDict>) -> PyResult<usize> {
+        Ok(gradients::reach(&layout.frame(), &convert::parameters(parameters)?))
     }
 
     /// II-A: dominant directions.
@@ -162,6 +179,32 @@ mod _core {
         Ok(convert::subdivision(subdivision)?.problems())
     }
 
+    /// II-D: what some rows of a map add to the faces; only the layout's rows are at hand.
+    #[pyfunction]
+    fn sum_faces<'py>(
+        py: Python<'py>,
+        layout: Layout<'py>,
+        held: (usize, usize),
+        rows: (usize, usize),
+        directions: &Bound<'py, PyDict>,
+        lines: &Bound<'py, PyDict>,
+        threads: usize,
+    ) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        let (directions, lines) = (convert::directions(directions)?, convert::lines(lines)?);
+        convert::demand_directions(&lines, &directions)?;
+        let made = layout.with_part(
+            py,
+            held,
+            [rows, (0, 0)],
+            |_| 0,
+            |grid, [rows, _]| {
+                let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines);
+                FaceSums::new(grid, &arrangement, rows, threads)
+            },
+        )?;
+        convert::from_sums(py, &made)
+    }
+
     /// II-D: O(face), O(edge).
     #[pyfunction]
     fn find_occupancy<'py>(
@@ -179,7 +222,8 @@ mod _core {
         convert::demand_grid(&gradients, &layout.frame())?;
         let made = layout.with_grid(py, |grid| {
             let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines);
-            occupancy::find_occupancy(grid, &arrangement, &directions, &lines, &gradients, &parameters, threads)
+            let sums = FaceSums::new(grid, &arrangement, 0..grid.frame.height, threads);
+            occupancy::find_occupancy(&grid.frame, &sums, &arrangement, &directions, &lines, &gradients, &parameters)
         })?;
         convert::from_occupancy(py, made)
     }

@@ -3,7 +3,7 @@
 use crate::arrangement::Arrangement;
 use crate::directions::Directions;
 use crate::gradients::Gradients;
-use crate::grid::{Grid, tidy};
+use crate::grid::{Frame, tidy};
 use crate::lines::Lines;
 use crate::parameters::Parameters;
 use crate::radiograms::weight;
@@ -24,14 +24,13 @@ pub struct Covered {
 
 /// O(edge): the edge pixels that lie on each line mark the parts of its length that they cover.
 pub fn cover_edges(
-    grid: &Grid,
+    frame: &Frame,
     arrangement: &Arrangement,
     directions: &Directions,
     lines: &Lines,
     gradients: &Gradients,
     parameters: &Parameters,
 ) -> Covered {
-    let frame = &grid.frame;
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
     let mut shares = vec![0.0; arrangement.edges.len()];
     let mut by_line: Vec<Vec<(u32, [f64; 2])>> = vec![Vec::new(); lines.len()];

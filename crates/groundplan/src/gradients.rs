@@ -6,8 +6,9 @@
 //! eigenvalues' disparity is the gradient's magnitude. Sums of integers only, so nothing depends on the order.
 
 use crate::bands::map_bands;
-use crate::grid::{Grid, State, undirected};
+use crate::grid::{Frame, Grid, State, undirected};
 use crate::parameters::Parameters;
+use std::ops::Range;
 
 /// Edge pixels (occupied, with a 4-neighbour that is not) and the gradient at each, in rows from the bottom up.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,18 +26,45 @@ const MIN_RADIUS: usize = 7;
 /// Largest window, pixels; beyond it only time is lost.
 const MAX_RADIUS: usize = 32;
 
+/// Radius of the window, pixels.
+fn radius(frame: &Frame, parameters: &Parameters) -> usize {
+    let radius = (parameters.gradients_radius / frame.resolution).round();
+    (radius.clamp(0.0, MAX_RADIUS as f64) as usize).clamp(MIN_RADIUS, MAX_RADIUS)
+}
+
+/// How far a pixel bears on gradients around it, pixels along either axis: on those of the edge pixels whose window holds
+/// it or a neighbour of it.
+#[must_use]
+pub fn reach(frame: &Frame, parameters: &Parameters) -> usize {
+    radius(frame, parameters) + 1
+}
+
 /// Finds the edge pixels and their gradients.
 #[must_use]
 pub fn find_gradients(grid: &Grid, parameters: &Parameters, threads: usize) -> Gradients {
-    let height = grid.frame.height;
-    let rows: Vec<Vec<u32>> =
-        map_bands(height, threads, |band| edge_pixels(grid, band)).into_iter().flatten().collect();
-    let radius = (parameters.gradients_radius / grid.frame.resolution).round();
-    let radius = (radius.clamp(0.0, MAX_RADIUS as f64) as usize).clamp(MIN_RADIUS, MAX_RADIUS);
-    let parts = map_bands(height, threads, |band| {
+    find_gradients_in(grid, 0..grid.frame.height, 0..grid.frame.width, parameters, threads)
+}
+
+/// The gradients of some rows and columns, as [`find_gradients`] has them there. Of the grid the rows within [`reach`] of
+/// these need be at hand.
+#[must_use]
+pub fn find_gradients_in(
+    grid: &Grid,
+    rows: Range<usize>,
+    columns: Range<usize>,
+    parameters: &Parameters,
+    threads: usize,
+) -> Gradients {
+    let radius = radius(&grid.frame, parameters);
+    let around = |range: &Range<usize>, end: usize| range.start.saturating_sub(radius)..(range.end + radius).min(end);
+    let (window, across) = (around(&rows, grid.frame.height), around(&columns, grid.frame.width));
+    let shifted = |band: Range<usize>, by: usize| band.start + by..band.end + by;
+    let edges = map_bands(window.len(), threads, |band| edge_pixels(grid, shifted(band, window.start), &across));
+    let edges = Edges { first: window.start, rows: edges.into_iter().flatten().collect() };
+    let parts = map_bands(rows.len(), threads, |band| {
         let mut part = Gradients::default();
-        for y in band {
-            row_gradients(&rows, y, radius, &mut part);
+        for y in shifted(band, rows.start) {
+            row_gradients(&edges, y, &columns, radius, &mut part);
         }
         part
     });
@@ -49,11 +77,17 @@ pub fn find_gradients(grid: &Grid, parameters: &Parameters, threads: usize) -> G
     all
 }
 
+/// Columns of the edge pixels of each row, from the first one on.
+struct Edges {
+    first: usize,
+    rows: Vec<Vec<u32>>,
+}
+
 /// Pixels that are looked at together.
 const WORD: usize = 8;
 
-/// Columns of the edge pixels of each row of the band.
-fn edge_pixels(grid: &Grid, band: std::ops::Range<usize>) -> Vec<Vec<u32>> {
+/// Columns of the edge pixels of each row of the band, among some columns.
+fn edge_pixels(grid: &Grid, band: Range<usize>, among: &Range<usize>) -> Vec<Vec<u32>> {
     let taken = grid.table.states.map(|s| s == State::Occupied);
     let (width, height) = (grid.frame.width, grid.frame.height);
     let is_taken = |row: &[u8], x: usize| taken[usize::from(row[x])];
@@ -63,12 +97,13 @@ fn edge_pixels(grid: &Grid, band: std::ops::Range<usize>) -> Vec<Vec<u32>> {
         let below = grid.row(y.saturating_sub(1));
         let above = grid.row((y + 1).min(height - 1));
         let mut columns = Vec::new();
-        for (n, pixels) in row.chunks(WORD).enumerate() {
+        for (n, pixels) in row[among.clone()].chunks(WORD).enumerate() {
             // Eight free or unknown pixels alike are the most of a map.
             if pixels == [pixels[0]; WORD] && !taken[usize::from(pixels[0])] {
                 continue;
             }
-            for x in n * WORD..n * WORD + pixels.len() {
+            let first = among.start + n * WORD;
+            for x in first..first + pixels.len() {
                 if is_taken(row, x)
                     && !(is_taken(row, x.saturating_sub(1))
                         && is_taken(row, (x + 1).min(width - 1))
@@ -84,22 +119,25 @@ fn edge_pixels(grid: &Grid, band: std::ops::Range<usize>) -> Vec<Vec<u32>> {
     .collect()
 }
 
-/// Gradients of one row's edge pixels, from the scatter of the edge pixels within `radius`. The window is round: of a
+/// Gradients of one row's edge pixels among some columns, from the scatter of the edge pixels within `radius`. The window is round: of a
 /// wall's two faces a square one would cut off unequal ends, and so turn them towards its own corners.
-fn row_gradients(rows: &[Vec<u32>], y: usize, radius: usize, out: &mut Gradients) {
-    let columns = &rows[y];
-    if columns.is_empty() {
+fn row_gradients(edges: &Edges, y: usize, among: &Range<usize>, radius: usize, out: &mut Gradients) {
+    let Edges { first, rows } = edges;
+    let own = &rows[y - first];
+    let own = &own[own.partition_point(|&x| (x as usize) < among.start)..];
+    let own = &own[..own.partition_point(|&x| (x as usize) < among.end)];
+    if own.is_empty() {
         return;
     }
-    let around = y.saturating_sub(radius)..(y + radius + 1).min(rows.len());
+    let around = y.saturating_sub(radius).max(*first)..(y + radius + 1).min(first + rows.len());
     let reaches: Vec<i64> =
         around.clone().map(|other| (radius.pow(2) - y.abs_diff(other).pow(2)).isqrt() as i64).collect();
     let mut starts = vec![0usize; around.len()];
-    for &column in columns {
+    for &column in own {
         let x = i64::from(column);
         let (mut n, mut sx, mut sy, mut sxx, mut sxy, mut syy) = (0i64, 0i64, 0i64, 0i64, 0i64, 0i64);
         for ((start, &reach), other) in starts.iter_mut().zip(&reaches).zip(around.clone()) {
-            let row = &rows[other];
+            let row = &rows[other - first];
             while *start < row.len() && i64::from(row[*start]) < x - reach {
                 *start += 1;
             }

@@ -1,5 +1,7 @@
 //! The grid: pixels as they lie, what each value means, and the one place where a pixel becomes metres.
 
+use std::ops::Range;
+
 /// What a pixel is known to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
@@ -144,6 +146,9 @@ pub fn angle_between(a: f64, b: f64) -> f64 {
 pub struct Grid<'a> {
     pixels: &'a [u8],
     bottom_up: bool,
+    /// The lowest row that is at hand, and how many are.
+    first: usize,
+    count: usize,
     /// What each value means.
     pub table: &'a Table,
     /// Where it lies.
@@ -158,15 +163,25 @@ impl<'a> Grid<'a> {
     /// When the number of pixels is not `width * height`: the caller's bug.
     #[must_use]
     pub fn new(pixels: &'a [u8], bottom_up: bool, table: &'a Table, frame: Frame) -> Self {
-        assert_eq!(pixels.len(), frame.width * frame.height, "pixels of the grid");
-        Self { pixels, bottom_up, table, frame }
+        Self::part(pixels, bottom_up, table, frame, 0..frame.height)
+    }
+
+    /// A grid of which only some rows are at hand, counted from the bottom: of the others nothing may be asked. The frame
+    /// is that of the whole map.
+    ///
+    /// # Panics
+    /// When the number of pixels is not that of these rows: the caller's bug.
+    #[must_use]
+    pub fn part(pixels: &'a [u8], bottom_up: bool, table: &'a Table, frame: Frame, rows: Range<usize>) -> Self {
+        assert_eq!(pixels.len(), frame.width * rows.len(), "pixels of the grid");
+        Self { pixels, bottom_up, first: rows.start, count: rows.len(), table, frame }
     }
 
     /// Row `y` counted from the bottom, left to right.
     #[must_use]
     pub fn row(&self, y: usize) -> &'a [u8] {
-        let (width, height) = (self.frame.width, self.frame.height);
-        let lies = if self.bottom_up { y } else { height - 1 - y };
+        let width = self.frame.width;
+        let lies = if self.bottom_up { y - self.first } else { self.first + self.count - 1 - y };
         &self.pixels[lies * width..(lies + 1) * width]
     }
 }

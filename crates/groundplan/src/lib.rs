@@ -40,6 +40,7 @@ pub mod parameters;
 pub mod radiograms;
 pub mod route;
 pub mod subdivision;
+pub mod sums;
 mod survey;
 mod tiles;
 pub mod walls;

@@ -12,6 +12,7 @@ use crate::occupancy::{Occupancy, find_occupancy};
 use crate::parameters::{Method, Parameters};
 use crate::radiograms::{Radiogram, find_radiograms};
 use crate::subdivision::Subdivision;
+use crate::sums::FaceSums;
 use crate::walls::{Walls, find_walls};
 
 /// Partial trouble: a stable code and a sentence that names the value.
@@ -57,10 +58,14 @@ pub struct Survey {
 /// Stages' results that are given, not found: how one stage is replaced.
 #[derive(Clone, Debug, Default)]
 pub struct Given {
+    /// In place of II-A's gradients, such as parts that were found one by one.
+    pub gradients: Option<Gradients>,
     /// In place of II-A.
     pub directions: Option<Directions>,
     /// In place of II-B.
     pub lines: Option<Lines>,
+    /// What the pixels add to the faces that these lines make.
+    pub sums: Option<FaceSums>,
 }
 
 /// Surveys a grid. Total: any grid and parameters give a valid subdivision, at worst one face, and warnings.
@@ -95,13 +100,15 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
 /// The stages up to the adjacency.
 fn without_labels(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> Survey {
     let frame = &grid.frame;
-    let gradients = find_gradients(grid, parameters, threads);
+    let gradients = given.gradients.unwrap_or_else(|| find_gradients(grid, parameters, threads));
     let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters));
     let radiograms = find_radiograms(frame, &gradients, &directions, parameters);
     let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
     let arrangement = arrange(frame, &directions.angles, &lines);
     let subdivision = Subdivision::new(frame, arrangement.clone());
-    let occupancy = find_occupancy(grid, &arrangement, &directions, &lines, &gradients, parameters, threads);
+    let fits = |sums: &FaceSums| [&sums.within, &sums.under].iter().all(|part| part.len() == arrangement.face_count());
+    let sums = given.sums.filter(fits).unwrap_or_else(|| FaceSums::new(grid, &arrangement, 0..frame.height, threads));
+    let occupancy = find_occupancy(frame, &sums, &arrangement, &directions, &lines, &gradients, parameters);
     let walls = find_walls(&subdivision, &occupancy, parameters);
     let adjacency = find_adjacency(&subdivision, &walls);
     Survey {

@@ -14,6 +14,7 @@ from groundplan._cli.survey import add_method, printable, refuse_nothing, settin
 if TYPE_CHECKING:
     from groundplan.maps import Map
     from groundplan.maps.live import Topic
+    from groundplan.survey import Survey
 
 #: Where the survey goes on the network unless another topic is named.
 PUBLISHED = "/groundplan/survey"
@@ -79,7 +80,7 @@ def run(arguments: argparse.Namespace) -> None:
 
     chosen = settings(arguments)
     thresholds = {"occupied_thresh": arguments.occupied_thresh, "free_thresh": arguments.free_thresh}
-    done = 0
+    last: Survey | None = None
     with Topic(arguments.topic, arguments.domain, **thresholds) as topic, terminal.status(arguments.quiet) as status:
         name = topic.name.rpartition("/")[2]
         out = Path(f"{name}-survey") if arguments.out is None else Path(arguments.out)
@@ -96,11 +97,10 @@ def run(arguments: argparse.Namespace) -> None:
                 status.clear()
                 terminal.say("warning", f"{fault} [{fault.code}]")
                 continue
-            keep(arguments, topic, map, out, chosen, status)
-            done += 1
+            last = keep(arguments, topic, map, out, chosen, status, last)
             if arguments.once:
                 return
-        if not done:
+        if last is None:
             raise nothing_came(topic, arguments.timeout)
 
 
@@ -111,31 +111,38 @@ def keep(
     out: Path,
     chosen: dict[str, Any],
     status: terminal.Status,
-) -> None:
-    """Survey a map, write the survey, publish it and say so."""
+    last: Survey | None,
+) -> Survey:
+    """Survey a map, write the survey, publish it and say so; of the last map only what changed is looked for anew."""
     import dataclasses
 
     import groundplan
     from groundplan._files import write_text
 
     since = time.monotonic()
-    found = terminal.working(
-        status, f"surveying {topic.name}", lambda: groundplan.survey(map, threads=arguments.threads, **chosen)
-    )
-    named = dataclasses.replace(found.map, image=printable(arguments.name or found.map.image))
-    found = dataclasses.replace(found, map=named)
+    threads = arguments.threads
+
+    def surveyed() -> Survey:
+        if last is not None:
+            return last.update(map, threads=threads)
+        return groundplan.survey(map, threads=threads, keep=not arguments.once, **chosen)
+
+    made = terminal.working(status, f"surveying {topic.name}", surveyed)
+    named = dataclasses.replace(made.map, image=printable(arguments.name or made.map.image))
+    found = dataclasses.replace(made, map=named)
     text = found.to_json()
     write_text(out / "survey.json", text)
     if arguments.publish is not None:
         topic.publish(arguments.publish, text)
     if arguments.quiet:
-        return
+        return made
     status.clear()
     for warning in found.warnings:
         terminal.say("warning", f"{warning.message} [{warning.code}]")
     size = f"{map.width} x {map.height} pixels, {len(found.walls)} walls, {len(found.labels)} labels"
     terminal.say("surveyed", f"{topic.name}: {size}, {time.monotonic() - since:.2f} s")
     terminal.say("wrote", str(out / "survey.json"))
+    return made
 
 
 def nothing_came(topic: Topic, timeout: float) -> Exception:

@@ -8,6 +8,7 @@ use groundplan::gradients::Gradients;
 use groundplan::lines::Lines;
 use groundplan::occupancy::{Occupancy, find_occupancy};
 use groundplan::subdivision::Subdivision;
+use groundplan::sums::FaceSums;
 use groundplan::{Frame, Grid, Parameters, Table};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -222,7 +223,20 @@ impl Case {
             ..Lines::default()
         };
         let (gradients, parameters) = (Gradients::default(), Parameters::default());
-        find_occupancy(grid, arrangement, &directions, &lines, &gradients, &parameters, threads)
+        let height = grid.frame.height;
+        let mut sums = FaceSums::new(grid, arrangement, 0..height, threads);
+        // Found in two parts they are the same.
+        let middle = height / 3;
+        let parts = [0..middle, middle..height].map(|rows| FaceSums::new(grid, arrangement, rows, 1));
+        let added: Vec<i64> = (0..sums.within.len())
+            .map(|face| parts.iter().map(|part| part.within[face].percent + 1000 * part.within[face].free).sum())
+            .collect();
+        let whole: Vec<i64> = sums.within.iter().map(|sums| sums.percent + 1000 * sums.free).collect();
+        assert_eq!(added, whole, "face sums in parts");
+        for (face, under) in sums.under.iter_mut().enumerate().filter(|(_, under)| under.pixels > 0) {
+            *under = parts.iter().map(|part| part.under[face]).find(|part| part.pixels > 0).unwrap_or_default();
+        }
+        find_occupancy(&grid.frame, &sums, arrangement, &directions, &lines, &gradients, &parameters)
     }
 }
 
