@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Rows of one band: enough to be worth a thread's while, few enough to share out evenly.
-const BAND_ROWS: usize = 64;
+pub const BAND_ROWS: usize = 64;
 
 /// What `pass` makes of each band of `0..rows`, in the bands' order. Threads are started only when asked for.
 pub fn map_bands<T: Send>(rows: usize, threads: usize, pass: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {

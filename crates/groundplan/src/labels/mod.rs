@@ -19,6 +19,7 @@ mod racks;
 mod ragged;
 mod rooms;
 mod strips;
+mod sums;
 mod turned;
 
 pub use confidence::find_confidence;

@@ -3,7 +3,7 @@
 
 use super::Evidence;
 use super::look::Look;
-use crate::bands::map_bands;
+use super::sums::{Cells, Rows, What};
 use crate::radiograms::weight;
 use std::ops::Range;
 
@@ -33,11 +33,7 @@ pub struct Turned {
     pub start: [f64; 2],
     /// Cells along and across.
     pub size: [usize; 2],
-    /// Sums over v of samples that are not free, of occupied ones, and of cells that something stands in or beside: a
-    /// row for each place across and one more, in each all columns.
-    blocked: Vec<u32>,
-    occupied: Vec<u32>,
-    barred: Vec<u32>,
+    cells: Cells,
     /// Samples along a cell's side.
     samples: u32,
     /// Distance from post to post along its lines, metres, where posts recur.
@@ -65,29 +61,28 @@ impl Turned {
         let cell = side * frame.resolution;
         let start = [low(0), low(1)];
         let size: [usize; 2] = [0, 1].map(|axis| ((high(axis) - start[axis]) / cell).ceil().max(1.0) as usize);
+        let samples = (side as u32).clamp(1, 3);
         let mut made = Self {
             direction,
             angle,
             cell,
             start,
             size,
-            blocked: Vec::new(),
-            occupied: Vec::new(),
-            barred: Vec::new(),
-            samples: (side as u32).clamp(1, 3),
+            cells: Cells::default(),
+            samples,
             pitch: None,
             lines: Vec::new(),
             offsets: Vec::new(),
             covered: Vec::new(),
         };
-        made.sum_blocked(evidence, look);
+        made.cells = made.look_at(evidence, look);
         made.cover_lines(evidence);
         made.pitch = super::pitch::find(evidence, &made);
         made
     }
 
-    /// Sums over v, from the samples that are blocked or occupied in each cell.
-    fn sum_blocked(&mut self, evidence: &Evidence, look: &Look) {
+    /// The samples that are blocked or occupied in each cell.
+    fn look_at(&self, evidence: &Evidence, look: &Look) -> Cells {
         let [nu, nv] = self.size;
         let samples = self.samples as usize;
         let frame = &evidence.grid.frame;
@@ -97,32 +92,16 @@ impl Turned {
         let (origin, along, across) = (at(0.0, 0.0), at(sample, 0.0), at(0.0, sample));
         let steps = [along, across].map(|p| [0, 1].map(|axis| p[axis] - origin[axis]));
         let place = |b: f64| [0, 1].map(|axis| origin[axis] + 0.5 * steps[0][axis] + b * steps[1][axis]);
-        let cells = map_bands(nv, evidence.threads, |band| {
-            let mut cells = vec![0u8; band.len() * nu];
+        Cells::new(nu, nv, evidence.threads, |n, row| {
             let (mut lane, mut sum) = (vec![0u8; nu * samples], vec![0u8; nu * samples]);
-            for (row, n) in cells.chunks_mut(nu).zip(band) {
-                sum.fill(0);
-                for j in 0..samples {
-                    look.along(place((n * samples + j) as f64 + 0.5), steps[0], &mut lane);
-                    sum.iter_mut().zip(&lane).for_each(|(sum, sample)| *sum += sample);
-                }
-                for (cell, part) in row.iter_mut().zip(sum.chunks_exact(samples)) {
-                    *cell = part.iter().sum();
-                }
+            for j in 0..samples {
+                look.along(place((n * samples + j) as f64 + 0.5), steps[0], &mut lane);
+                sum.iter_mut().zip(&lane).for_each(|(sum, sample)| *sum += sample);
             }
-            cells
+            for (cell, part) in row.iter_mut().zip(sum.chunks_exact(samples)) {
+                *cell = part.iter().sum();
+            }
         })
-        .concat();
-        self.blocked = cumulate(nu, &cells, |cell| cell & 15);
-        self.occupied = cumulate(nu, &cells, |cell| cell >> 4);
-        // A wall one pixel thick, or not quite square to the columns, shows in two or three of them.
-        let mut barred = vec![0u8; cells.len()];
-        for (to, row) in barred.chunks_mut(nu).zip(cells.chunks(nu)) {
-            to.iter_mut().zip(row).for_each(|(to, cell)| *to = cell >> 4);
-            to.iter_mut().zip(&row[1..]).for_each(|(to, next)| *to |= next >> 4);
-            to[1..].iter_mut().zip(row).for_each(|(to, before)| *to |= before >> 4);
-        }
-        self.barred = cumulate(nu, &barred, |cell| u8::from(cell != 0));
     }
 
     fn cover_lines(&mut self, evidence: &Evidence) {
@@ -179,12 +158,12 @@ impl Turned {
 
     /// Share of a column that is not free between two places across, 0 to 1; all of it where there is no cell between.
     pub fn blocked(&self, column: usize, low: f64, high: f64) -> f64 {
-        self.share(&self.blocked, self.samples.pow(2), column, low, high)
+        self.share(What::Blocked, column, low, high)
     }
 
     /// Share of the way across a column that is barred: something stands in it, or in the columns beside it.
     pub fn barred(&self, column: usize, low: f64, high: f64) -> f64 {
-        self.share(&self.barred, 1, column, low, high)
+        self.share(What::Barred, column, low, high)
     }
 
     /// True when nothing gets through a column between two places across.
@@ -194,21 +173,25 @@ impl Turned {
 
     /// Share of a column that is occupied.
     pub fn occupied(&self, column: usize, low: f64, high: f64) -> f64 {
-        self.share(&self.occupied, self.samples.pow(2), column, low, high)
+        self.share(What::Occupied, column, low, high)
     }
 
-    fn share(&self, sums: &[u32], samples: u32, column: usize, low: f64, high: f64) -> f64 {
+    fn share(&self, what: What, column: usize, low: f64, high: f64) -> f64 {
         let (from, to) = self.cells(low, high);
         if from == to {
             return 1.0;
         }
-        let at = |n: usize| sums[n * self.size[0] + column];
-        f64::from(at(to) - at(from)) / f64::from((to - from) as u32 * samples)
+        f64::from(self.cells.rows(what, from, to).at(column)) / f64::from((to - from) as u32 * self.counts(what))
+    }
+
+    /// How many of a cell's samples, or cells, are asked.
+    fn counts(&self, what: What) -> u32 {
+        if matches!(what, What::Barred) { 1 } else { self.samples.pow(2) }
     }
 
     /// [`Turned::blocked`] of all columns.
     pub fn all_blocked(&self, low: f64, high: f64) -> Vec<f64> {
-        self.shares(&self.blocked, self.samples.pow(2), 0..self.size[0], low, high)
+        self.shares(What::Blocked, 0..self.size[0], low, high)
     }
 
     /// [`Turned::is_closed`] of all columns.
@@ -223,24 +206,23 @@ impl Turned {
 
     /// [`Turned::barred`] of a range of columns.
     pub fn all_barred(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
-        self.shares(&self.barred, 1, columns, low, high)
+        self.shares(What::Barred, columns, low, high)
     }
 
     /// How much of every column is not free between two places across, as it is counted.
     pub fn blocked_in(&self, low: f64, high: f64) -> Shares<'_> {
         let (from, to) = self.cells(low, high);
-        let row = |n: usize| &self.blocked[n * self.size[0]..][..self.size[0]];
-        Shares { below: row(from), above: row(to), count: (to - from) as u32 * self.samples.pow(2) }
+        let rows = self.cells.rows(What::Blocked, from, to);
+        Shares { rows, count: (to - from) as u32 * self.counts(What::Blocked) }
     }
 
-    fn shares(&self, sums: &[u32], samples: u32, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
+    fn shares(&self, what: What, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
         let (from, to) = self.cells(low, high);
         if from == to {
             return vec![1.0; columns.len()];
         }
-        let count = f64::from((to - from) as u32 * samples);
-        let row = |n: usize| &sums[n * self.size[0]..][columns.clone()];
-        row(to).iter().zip(row(from)).map(|(to, from)| f64::from(to - from) / count).collect()
+        let count = f64::from((to - from) as u32 * self.counts(what));
+        self.cells.rows(what, from, to).over(columns).into_iter().map(|sum| f64::from(sum) / count).collect()
     }
 
     /// The cells across between two places: from, to.
@@ -253,8 +235,7 @@ impl Turned {
 /// Of how many samples of each column something is true.
 #[derive(Clone, Copy)]
 pub struct Shares<'a> {
-    below: &'a [u32],
-    above: &'a [u32],
+    rows: Rows<'a>,
     /// Samples of a column.
     count: u32,
 }
@@ -262,7 +243,7 @@ pub struct Shares<'a> {
 impl Shares<'_> {
     /// Of so many samples of a column.
     pub fn at(self, column: usize) -> u32 {
-        self.above[column] - self.below[column]
+        self.rows.at(column)
     }
 
     /// The least number of samples whose share is as much as is asked for. Where there is no sample the share is all.
@@ -279,16 +260,4 @@ impl Shares<'_> {
 
 fn is_closed(blocked: f64, barred: f64) -> bool {
     blocked > IMPASSABLE || barred > BARRED
-}
-
-/// Sums of rows of cells: a row of nothing, the first row, the first two, and so on.
-fn cumulate(width: usize, cells: &[u8], part: impl Fn(u8) -> u8) -> Vec<u32> {
-    let mut sums = vec![0u32; cells.len() + width];
-    for (n, row) in cells.chunks(width).enumerate() {
-        let (below, above) = sums[n * width..(n + 2) * width].split_at_mut(width);
-        for ((above, below), &cell) in above.iter_mut().zip(below).zip(row) {
-            *above = *below + u32::from(part(cell));
-        }
-    }
-    sums
 }

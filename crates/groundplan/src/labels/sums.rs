@@ -1,0 +1,234 @@
+//! The cells of a view as sums: of how many samples, or cells, of a column something is true between any two places across.
+//!
+//! A view of few cells keeps its sums from the first row on. One of many keeps squares of cells, and those that are all
+//! alike as one number: most of a large map is.
+
+use crate::bands::map_bands;
+
+/// What is asked of a cell.
+#[derive(Clone, Copy)]
+pub enum What {
+    /// Samples that are not free.
+    Blocked,
+    /// Samples that are occupied.
+    Occupied,
+    /// The cell itself: something stands in it or in the ones beside it.
+    Barred,
+}
+
+/// Views of more cells than this keep squares.
+const MANY: usize = 1 << 23;
+/// Cells along the side of a square.
+const SIDE: usize = 8;
+/// A byte for each of eight columns.
+const ONES: u64 = 0x0101_0101_0101_0101;
+const LOW: u64 = 0x0f0f_0f0f_0f0f_0f0f;
+/// Of a square that is all alike: its cells' byte, and the bit that says so.
+const ALIKE: u32 = 1 << 31;
+/// The greatest sums that are added up in 16 bits: rows of at most nine samples.
+const ROWS: usize = 4096;
+
+/// The cells of a view.
+pub enum Cells {
+    /// For each thing that is asked, row after row the sums of all rows before: one row more than there are of cells.
+    Summed { width: usize, sums: [Vec<u32>; 3] },
+    /// Bands of rows of squares.
+    Squared { width: usize, bands: Vec<Band> },
+}
+
+/// A row of squares after another.
+pub struct Band {
+    /// For each square its byte if it is all alike, or its place in the list.
+    places: Vec<u32>,
+    squares: Vec<Square>,
+}
+
+/// Rows of cells, a byte for each column with its blocked samples in the low half and its occupied ones in the high half; and
+/// a byte for each row with a bit for each column that is barred.
+struct Square {
+    cells: [u64; SIDE],
+    barred: [u8; SIDE],
+}
+
+impl Default for Cells {
+    fn default() -> Self {
+        Self::Squared { width: 0, bands: Vec::new() }
+    }
+}
+
+impl Cells {
+    /// From what makes the cells of any row, a byte each.
+    pub fn new(width: usize, height: usize, threads: usize, make: impl Fn(usize, &mut [u8]) + Sync) -> Self {
+        let rows = |band: std::ops::Range<usize>| {
+            let mut cells = vec![0u8; band.len() * width];
+            cells.chunks_mut(width).zip(band).for_each(|(row, n)| make(n, row));
+            cells
+        };
+        if width * height > MANY {
+            let bands = map_bands(height, threads, |band| Band::new(width, &rows(band)));
+            return Self::Squared { width, bands };
+        }
+        let cells = map_bands(height, threads, rows).concat();
+        let barred: Vec<u8> = cells.chunks(width).flat_map(barred).collect();
+        let sums = [cumulate(width, &cells, |cell| cell & 15), cumulate(width, &cells, |cell| cell >> 4)];
+        let [blocked, occupied] = sums;
+        Self::Summed { width, sums: [blocked, occupied, cumulate(width, &barred, |cell| cell)] }
+    }
+
+    /// The rows from one to before another.
+    pub fn rows(&self, what: What, from: usize, to: usize) -> Rows<'_> {
+        match self {
+            Self::Summed { width, sums } => {
+                let row = |n: usize| &sums[what as usize][n * width..][..*width];
+                Rows::Summed { below: row(from), above: row(to) }
+            }
+            Self::Squared { width, bands } => Rows::Squared { width: *width, bands, what, rows: [from, to] },
+        }
+    }
+}
+
+/// Some rows of cells.
+#[derive(Clone, Copy)]
+pub enum Rows<'a> {
+    Summed { below: &'a [u32], above: &'a [u32] },
+    Squared { width: usize, bands: &'a [Band], what: What, rows: [usize; 2] },
+}
+
+impl Rows<'_> {
+    /// The sum over them of one column.
+    pub fn at(self, column: usize) -> u32 {
+        match self {
+            Self::Summed { below, above } => above[column] - below[column],
+            Self::Squared { width, bands, what, rows } => {
+                let byte = |sums: u64| sums >> (column % SIDE * 8) as u32 & 255;
+                squares(bands, width, column / SIDE, what, rows).map(|sums| byte(sums) as u32).sum()
+            }
+        }
+    }
+
+    /// The sums over them of some columns.
+    pub fn over(self, columns: std::ops::Range<usize>) -> Vec<u32> {
+        match self {
+            Self::Summed { below, above } => {
+                above[columns.clone()].iter().zip(&below[columns]).map(|(above, below)| above - below).collect()
+            }
+            Self::Squared { width, bands, what, rows: [from, to] } => {
+                let first = columns.start / SIDE;
+                let mut found = vec![0u32; (columns.end.div_ceil(SIDE).max(first) - first) * SIDE];
+                for (n, sums) in found.chunks_mut(SIDE).enumerate() {
+                    for start in (from..to).step_by(ROWS) {
+                        let rows = [start, to.min(start + ROWS)];
+                        // Every second byte, so that there is room for what they add up to.
+                        let (mut even, mut odd) = (0u64, 0u64);
+                        for part in squares(bands, width, first + n, what, rows) {
+                            even += part & 0x00ff_00ff_00ff_00ff;
+                            odd += part >> 8 & 0x00ff_00ff_00ff_00ff;
+                        }
+                        for (n, sum) in sums.iter_mut().enumerate() {
+                            *sum += ((if n % 2 == 0 { even } else { odd }) >> (n / 2 * 16) & 0xffff) as u32;
+                        }
+                    }
+                }
+                let before = columns.start % SIDE;
+                found.drain(..before);
+                found.truncate(columns.len());
+                found
+            }
+        }
+    }
+}
+
+/// The sums over rows, square by square, of the columns of one, a byte each.
+fn squares(
+    bands: &[Band],
+    width: usize,
+    column: usize,
+    what: What,
+    [from, to]: [usize; 2],
+) -> impl Iterator<Item = u64> + '_ {
+    let across = width.div_ceil(SIDE);
+    (from / SIDE..to.div_ceil(SIDE)).map(move |n| {
+        let band = &bands[n / BAND];
+        let place = band.places[n % BAND * across + column];
+        let (first, last) = (from.saturating_sub(n * SIDE), (to - n * SIDE).min(SIDE));
+        if place & ALIKE != 0 {
+            return u64::from(of_cell(place as u8, what)) * (last - first) as u64 * ONES;
+        }
+        let square = &band.squares[place as usize];
+        match what {
+            What::Blocked => square.cells[first..last].iter().map(|row| row & LOW).sum(),
+            What::Occupied => square.cells[first..last].iter().map(|row| row >> 4 & LOW).sum(),
+            What::Barred => square.barred[first..last].iter().map(|row| spread(*row)).sum(),
+        }
+    })
+}
+
+/// Rows of squares in a band.
+const BAND: usize = crate::bands::BAND_ROWS / SIDE;
+
+impl Band {
+    fn new(width: usize, cells: &[u8]) -> Self {
+        let across = width.div_ceil(SIDE);
+        let mut made = Self { places: Vec::with_capacity(across * BAND), squares: Vec::new() };
+        let barred: Vec<u8> = cells.chunks(width).flat_map(barred).collect();
+        for (cells, barred) in cells.chunks(SIDE * width).zip(barred.chunks(SIDE * width)) {
+            for from in (0..width).step_by(SIDE) {
+                // What lies beyond the borders is like what lies on them.
+                let byte = |list: &[u8], row: usize, n: usize| {
+                    list[row.min(list.len() / width - 1) * width + (from + n).min(width - 1)]
+                };
+                let mut square = Square { cells: [0; SIDE], barred: [0; SIDE] };
+                for row in 0..SIDE {
+                    for n in 0..SIDE {
+                        square.cells[row] |= u64::from(byte(cells, row, n)) << (8 * n);
+                        square.barred[row] |= byte(barred, row, n) << n;
+                    }
+                }
+                let first = square.cells[0] as u8;
+                let is_barred = if of_cell(first, What::Barred) == 1 { 255 } else { 0 };
+                let alike = square.cells == [u64::from(first) * ONES; SIDE] && square.barred == [is_barred; SIDE];
+                made.places.push(if alike { ALIKE | u32::from(first) } else { made.squares.len() as u32 });
+                if !alike {
+                    made.squares.push(square);
+                }
+            }
+        }
+        made.squares.shrink_to_fit();
+        made
+    }
+}
+
+fn of_cell(cell: u8, what: What) -> u8 {
+    match what {
+        What::Blocked => cell & 15,
+        What::Occupied => cell >> 4,
+        What::Barred => u8::from(cell >> 4 != 0),
+    }
+}
+
+/// A byte for each bit.
+fn spread(bits: u8) -> u64 {
+    let apart = (u64::from(bits) * ONES) & 0x8040_2010_0804_0201;
+    (apart + 0x7f * ONES) >> 7 & ONES
+}
+
+/// In which cells of a row something stands, or beside which: a wall one pixel thick, or not quite square to the columns,
+/// shows in two or three of them.
+fn barred(row: &[u8]) -> Vec<u8> {
+    let mut barred: Vec<u8> = row.iter().map(|cell| cell >> 4).collect();
+    barred.iter_mut().zip(&row[1..]).for_each(|(to, next)| *to |= next >> 4);
+    barred[1..].iter_mut().zip(row).for_each(|(to, before)| *to |= before >> 4);
+    barred.into_iter().map(|cell| u8::from(cell != 0)).collect()
+}
+
+/// Sums of rows of cells: a row of nothing, the first row, the first two, and so on.
+fn cumulate(width: usize, cells: &[u8], part: impl Fn(u8) -> u8) -> Vec<u32> {
+    let mut sums = vec![0u32; cells.len() + width];
+    for (n, row) in cells.chunks(width).enumerate() {
+        let (below, above) = sums[n * width..(n + 2) * width].split_at_mut(width);
+        for ((above, below), &cell) in above.iter_mut().zip(below).zip(row) {
+            *above = *below + u32::from(part(cell));
+        }
+    }
+    sums
+}
