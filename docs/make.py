@@ -1,4 +1,4 @@
-"""Make anew what the docs show: the README's picture and the table of scores. Run by `make docs`."""
+"""Make anew what the docs show: the README's picture and formats, and the tables of scores. Run by `make docs`."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import sysconfig
 from pathlib import Path
 
 import groundplan
+from groundplan.export import FORMATS
 from groundplan.figures import draw_survey
 
 DOCS = Path(__file__).parent
@@ -26,20 +27,32 @@ def picture() -> None:
         drawn.convert("RGB").quantize(128).save(place, optimize=True)
 
 
+def formats() -> None:
+    """The table of formats into the README."""
+    rows = [f"| `{form.name}` | {form.holds} | {form.readers} | {form.tested} |" for form in FORMATS.values()]
+    head = ["| format | what it holds | for | tested with |", "|---|---|---|---|"]
+    _between(DOCS.parent / "README.md", "formats", "\n".join([*head, *rows]))
+
+
 def scores() -> None:
-    """The suites' tables into docs/accuracy.md, each between its two marks."""
-    page = DOCS / "accuracy.md"
+    """The suites' tables into docs/accuracy.md."""
     for suite in SUITES:
         table = subprocess.run(
             [PROGRAM, "evaluate", "--suite", suite], check=True, stdout=subprocess.PIPE, text=True
         ).stdout
-        begin, end = f"<!-- {suite} -->", f"<!-- end of {suite} -->"
-        before, _, rest = page.read_text(encoding="utf-8").partition(begin)
-        after = rest.partition(end)[2]
-        page.write_text(f"{before}{begin}\n\n```\n{table}```\n\n{end}{after}", encoding="utf-8")
+        _between(DOCS / "accuracy.md", suite, f"```\n{table}```")
+
+
+def _between(page: Path, name: str, text: str) -> None:
+    """Put a text between a page's two marks of a name."""
+    begin, end = f"<!-- {name} -->", f"<!-- end of {name} -->"
+    before, _, rest = page.read_text(encoding="utf-8").partition(begin)
+    after = rest.partition(end)[2]
+    page.write_text(f"{before}{begin}\n\n{text}\n\n{end}{after}", encoding="utf-8")
 
 
 if __name__ == "__main__":
     picture()
+    formats()
     scores()
-    sys.stderr.write("wrote docs/survey.png and docs/accuracy.md\n")
+    sys.stderr.write("wrote docs/survey.png, README.md and docs/accuracy.md\n")

@@ -13,11 +13,12 @@ from _exports import loads
 Roads = tuple[dict[str, tuple[float, float]], set[tuple[str, str]]]
 
 
-def route_graph(path: Path) -> tuple[Roads, dict[str, Any]]:
+def route_graph(path: Path, ours: bool = True) -> tuple[Roads, dict[str, Any]]:
     """A graph as the Nav2 Route Server's GeoJSON loader takes it; and each edge's metadata by its id in them.
 
     Points are nodes, line strings are edges, all else is passed over. Ids are 32-bit and their own, an edge's ends
-    exist, metadata are plain values or flat lists, numbers in them floats, coordinates 32-bit floats.
+    exist, metadata are plain values or flat lists, coordinates 32-bit floats. In ours metadata have ids, and numbers
+    among them are floats.
     """
     nodes: dict[int, tuple[float, float]] = {}
     names: dict[int, str] = {}
@@ -26,8 +27,10 @@ def route_graph(path: Path) -> tuple[Roads, dict[str, Any]]:
     for feature in loads(path)["features"]:
         values, shape = feature["properties"], feature["geometry"]
         number, metadata = values["id"], values.get("metadata", {})
-        assert isinstance(number, int) and 0 <= number < 2**32 and number not in nodes and number not in edges
-        _plain(metadata)
+        assert isinstance(number, int) and 0 <= number < 2**32 and number not in nodes
+        assert not ours or number not in edges  # one of Nav2's graphs tells edges twice
+        _plain(metadata, ours)
+        metadata = metadata if ours else {"id": str(number)} | metadata
         if shape["type"] == "Point":
             x, y = (struct.unpack("f", struct.pack("f", value))[0] for value in shape["coordinates"])
             nodes[number], names[number] = (x, y), metadata["id"]
@@ -39,16 +42,17 @@ def route_graph(path: Path) -> tuple[Roads, dict[str, Any]]:
     return ({names[n]: at for n, at in nodes.items()}, {(names[a], names[b]) for a, b in edges.values()}), told
 
 
-def _plain(value: Any, listed: bool = False) -> None:
+def _plain(value: Any, floats: bool, listed: bool = False) -> None:
     """What the loader's conversion to its metadata takes."""
     if isinstance(value, dict) and not listed:
         for inner in value.values():
-            _plain(inner)
+            _plain(inner, floats)
     elif isinstance(value, list) and not listed:
         for inner in value:
-            _plain(inner, listed=True)
+            _plain(inner, floats, listed=True)
     else:
-        assert isinstance(value, bool | float | str), f"{value!r} stops the loader, or becomes another type"
+        taken = bool | float | str if floats else bool | float | str | int
+        assert isinstance(value, taken), f"{value!r} stops the loader, or becomes another type"
 
 
 def building(path: Path) -> tuple[Roads, dict[str, Any]]:

@@ -7,9 +7,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from _exports import GOOD, ODD, demo, same_twice
 from _program import call, files, write_map
+from conftest import ROOT, SHARED
 
 import groundplan
 from groundplan import GroundplanError, ParameterError
@@ -35,8 +37,20 @@ def test_every_format_has_a_test_that_reads_it_back(name: str) -> None:
 @pytest.mark.parametrize("name", FORMATS)
 def test_every_format_says_who_reads_it_and_takes_options_that_there_are(name: str) -> None:
     form = FORMATS[name]
-    assert form.readers and form.holds and form.suffix.startswith(".") and set(form.options) <= set(OPTIONS)
+    assert (
+        form.readers
+        and form.tested
+        and form.holds
+        and form.suffix.startswith(".")
+        and set(form.options) <= set(OPTIONS)
+    )
     assert (form.extra is None) == (not form.needs) and form.map in ("no", "may", "must")
+
+
+def test_the_readme_has_a_row_for_every_format() -> None:
+    rows = [line for line in (ROOT / "README.md").read_text("utf-8").splitlines() if line.startswith("| `")]
+    table = [f"| `{form.name}` | {form.holds} | {form.readers} | {form.tested} |" for form in FORMATS.values()]
+    assert [row for row in rows if row in table] == table
 
 
 def test_every_option_is_some_format_s() -> None:
@@ -67,6 +81,42 @@ def test_an_odd_survey_is_written_whole_or_refused_in_clear_words(name: str, whi
 def test_exporting_twice_gives_the_same_bytes(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1777593600")
     assert same_twice(demo(), name, tmp_path)
+
+
+@pytest.mark.parametrize("name", [name for name, form in FORMATS.items() if form.map != "no"])
+def test_exporting_twice_with_the_map_gives_the_same_bytes(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1777593600")
+    assert same_twice(demo(), name, tmp_path, map=groundplan.read(ROOT / "examples" / "warehouse.yaml"))
+
+
+@pytest.mark.parametrize("name", [name for name, form in FORMATS.items() if "date" in form.options])
+def test_the_same_date_gives_the_same_bytes_and_another_others(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
+    dates = ("2026-05-01T09:30:00+02:00", "2026-05-01T07:30:00Z", "2026-05-02")
+    one, same, other = (
+        demo().export(tmp_path / str(n) / "x", name, date=date)[0].read_bytes() for n, date in enumerate(dates)
+    )
+    assert one == same != other
+
+
+@pytest.mark.parametrize("which", [*GOOD, *(which for which in ODD if which != "names")])
+def test_a_survey_comes_back_equal_from_its_json(which: str) -> None:
+    survey = (GOOD | ODD)[which]()
+    assert groundplan.Survey.from_json(survey.to_json()) == survey
+
+
+def test_every_published_schema_is_asked_by_a_test() -> None:
+    schemas = SHARED / "schemas"
+    if not schemas.is_dir():
+        pytest.skip(f"needs the published schemas: no {schemas}")
+    text = "".join(file.read_text("utf-8") for file in Path(__file__).parent.glob("test_*.py"))
+    for file in schemas.iterdir():
+        name = file.name.removeprefix("nav2-route-").removesuffix("_graph.geojson")
+        assert f'"{name}"' in text or file.suffix == ".md", f"no test reads {file}"
 
 
 def test_a_path_is_a_file_or_a_directory(tmp_path: Path) -> None:
@@ -126,6 +176,38 @@ def test_the_program_writes_several_formats_beside_the_survey_and_prints_their_n
     assert ran.out.split() == [str(out / "warehouse.places.csv"), str(out / "warehouse.graph.json")]
     beside = call(capsys, "export", saved, "--to", "csv", "-q")
     assert beside.out == "" and (saved.parent / "export" / "warehouse.places.csv").is_file()
+
+
+def test_a_format_that_refuses_stops_no_other_and_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pixels = np.full((60, 60), 254, np.uint8)
+    (tmp_path / "open.pgm").write_bytes(b"P5\n60 60\n255\n" + pixels.tobytes())
+    yaml = "image: open.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
+    (tmp_path / "open.yaml").write_text(yaml + "occupied_thresh: 0.65\nfree_thresh: 0.196\n")
+    ran = call(capsys, "survey", tmp_path / "open.yaml", "-o", tmp_path / "out", "--export", "all")
+    assert ran.code == 3 and "refused: straight: the map has no direction" in ran.err
+    assert ran.err.splitlines()[-1].startswith("error: not written: ") and "straight" in ran.err.splitlines()[-1]
+    there = files(tmp_path / "out" / "export")
+    refused = ran.err.splitlines()[-1].removeprefix("error: not written: ").split(", ")
+    for name, form in FORMATS.items():
+        assert (f"open{form.suffix}" in there) == (name not in refused)
+    later = call(capsys, "export", tmp_path / "out", "--to", "straight,csv", "-o", tmp_path / "later")
+    assert later.code == 3 and later.out.split() == [str(tmp_path / "later" / "open.places.csv")]
+    alone = call(capsys, "export", tmp_path / "out", "--to", "straight")
+    assert alone.code == 3 and "error: the map has no direction" in alone.err and "refused" not in alone.err
+
+
+def test_of_all_formats_those_are_written_whose_libraries_and_pixels_are_there(
+    saved: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "ifcopenshell", None)
+    ran = call(capsys, "export", saved, "--to", "all", "-o", tmp_path)
+    assert ran.code == 2 and "refused: ifc: ifcopenshell is not installed" in ran.err
+    assert (
+        "pip install 'groundplan[bim]'" in ran.err and ran.err.splitlines()[-1] == "error: not written: ifc, straight"
+    )
+    assert {f"warehouse{form.suffix}" for form in FORMATS.values() if form.name not in ("ifc", "straight")} <= files(
+        tmp_path
+    )
 
 
 def test_the_program_lists_every_format(capsys: pytest.CaptureFixture[str]) -> None:

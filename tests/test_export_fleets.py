@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 from collections.abc import Callable
@@ -10,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import jsonschema
+import networkx
 import pytest
 import shapely
 from _exports import GOOD, ODD, demo, loads, odd_names, once, shifted
@@ -138,6 +140,54 @@ def test_every_edge_of_the_route_graph_knows_its_free_width_and_speed(tmp_path: 
         assert (metadata["left"], metadata["right"]) == pytest.approx((way.left, way.right))
         assert metadata.get("abs_speed_limit") == way.lane.speed and metadata["class"] == way.lane.kind
     assert {0.8} <= {metadata.get("abs_speed_limit") for metadata in told.values()}
+
+
+@pytest.mark.parametrize("name", ["aws", "sample", "turtlebot4"])
+def test_nav2_s_own_graphs_are_read_by_the_same_rules_and_have_the_same_members(name: str, tmp_path: Path) -> None:
+    sample = SHARED / "schemas" / f"nav2-route-{name}_graph.geojson"
+    if not sample.is_file():
+        pytest.skip(f"needs Nav2's graphs: no {sample}")
+    (nodes, edges), _ = route_graph(sample, ours=False)
+    assert nodes and edges
+    own, theirs = loads(once(demo(), "nav2", tmp_path)), loads(sample)
+    assert own.keys() <= theirs.keys() and own["crs"] == theirs["crs"]
+    for type in ("Point", "LineString"):
+        ours = [f for f in own["features"] if f["geometry"]["type"] == type]
+        needed = [f for f in theirs["features"] if f["geometry"]["type"] in (type, f"Multi{type}")]
+        always = set.intersection(*(set(feature["properties"]) for feature in needed))
+        assert ours and needed and all(always <= set(feature["properties"]) for feature in ours)
+
+
+def test_a_way_over_the_layout_is_an_order_that_a_vehicle_takes(tmp_path: Path) -> None:
+    nodes, edges = lif(once(demo(), "lif", tmp_path, rules=ONE_WAY))
+    _, told = route_graph(once(demo(), "nav2", tmp_path, rules=ONE_WAY))
+    (layout,) = loads(tmp_path / "file.lif.json")["layouts"]
+    ids = {(edge["startNodeId"], edge["endNodeId"]): edge["edgeId"] for edge in layout["edges"]}
+    a, b = min(nodes, key=lambda n: sum(nodes[n])), max(nodes, key=lambda n: sum(nodes[n]))
+    way = networkx.shortest_path(networkx.DiGraph(sorted(edges)), a, b)
+    released = {"released": True, "actions": []}
+    order = {
+        **{"headerId": 1, "timestamp": "2026-05-01T09:30:00.000Z", "version": "3.0.0", "manufacturer": "nobody"},
+        **{"serialNumber": "1", "orderId": "1", "orderUpdateId": 0},
+        "nodes": [
+            {"nodeId": n, "sequenceId": 2 * k, "nodePosition": {"x": nodes[n][0], "y": nodes[n][1], "mapId": "map"}}
+            | released
+            for k, n in enumerate(way)
+        ],
+        "edges": [
+            {"edgeId": ids[pair], "sequenceId": 2 * k + 1, "corridor": _corridor(told[ids[pair]])} | released
+            for k, pair in enumerate(itertools.pairwise(way))
+        ],
+    }
+    taker = jsonschema.Draft202012Validator(schema("VDA5050-3.0.0-order.schema.json"))
+    assert len(way) > 5 and not list(taker.iter_errors(order))
+    # The schema is asked in earnest.
+    order["edges"][0]["corridor"]["leftWidth"] = "wide"  # type: ignore[index]
+    assert list(taker.iter_errors(order))
+
+
+def _corridor(metadata: dict[str, Any]) -> dict[str, Any]:
+    return {"leftWidth": metadata["left"], "rightWidth": metadata["right"], "corridorReferencePoint": "CONTOUR"}
 
 
 def test_a_map_far_from_its_origin_is_too_far_for_the_route_server(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ import shapely
 from _exports import GOOD, ODD, demo, loads, once
 
 from groundplan import ParameterError
+from groundplan.roadmap import road_map
 
 
 def features(path: Path, layer: str | None = None) -> list[tuple[Any, dict[str, Any]]]:
@@ -46,6 +47,13 @@ def test_gdal_reads_metres_to_a_millimetre(which: str, tmp_path: Path) -> None:
     _, _, blobs, _ = pyogrio.raw.read(file, where="layer = 'walls'")
     for shape, ends in zip(shapely.from_wkb(blobs), survey.walls.points.reshape(-1, 2, 2), strict=True):
         assert np.abs(shapely.get_coordinates(shape) - ends).max() < 1e-3
+
+
+def test_the_road_map_is_a_layer_too(tmp_path: Path) -> None:
+    roads = road_map(demo(), vehicle_width=1.0)
+    lanes = features(once(demo(), "geojson", tmp_path, vehicle_width=1.0), "road_lanes")
+    assert [values["id"] for _, values in lanes] == [lane.id for lane in roads.lanes]
+    assert [shape.length for shape, _ in lanes] == pytest.approx([roads.length(lane) for lane in roads.lanes], abs=1e-3)
 
 
 @pytest.mark.parametrize("heading", [90.0, 0.0, 217.5])

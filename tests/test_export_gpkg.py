@@ -9,9 +9,12 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+import pyogrio
 import pytest
 import shapely
 from _exports import GOOD, ODD, demo, odd_names, once
+
+from groundplan.roadmap import road_map
 
 #: Debian's QGIS belongs to Debian's Python, not to ours.
 SYSTEM_PYTHON = Path("/usr/bin/python3")
@@ -75,6 +78,22 @@ def test_layers_come_back_with_their_shapes_to_a_millimetre(which: str, tmp_path
         ]
 
 
+def test_the_road_map_comes_back_with_its_nodes_and_free_widths(tmp_path: Path) -> None:
+    survey, rules = demo(), [{"name": "A02", "way": "forward", "speed": 0.8}]
+    read = tables(once(survey, "gpkg", tmp_path, rules=rules, spurs=0.6))
+    roads = road_map(survey, rules=rules, spurs=0.6)
+    at = {values["id"]: shape for shape, values in read["road_nodes"]}
+    assert {id: shape.coords[0] for id, shape in at.items()} == {
+        node.id: pytest.approx(node.at, abs=1e-3) for node in roads.nodes
+    }
+    for (shape, values), lane in zip(read["road_lanes"], roads.lanes, strict=True):
+        assert shape.boundary.geoms[0] == at[values["start"]] and shape.boundary.geoms[1] == at[values["end"]]
+        assert (values["id"], values["left"], values["right"]) == (lane.id, lane.left, lane.right)
+        assert (values["speed"], values["way"]) == (lane.speed, lane.way)
+    assert {values["node"] for _, values in read["pick_faces"]} <= set(at)
+    assert len(read["pick_faces"]) == len(roads.faces) and len(read["road_zones"]) == len(roads.zones)
+
+
 def test_the_frame_is_an_undefined_cartesian_one_of_metres(tmp_path: Path) -> None:
     file = once(demo(), "gpkg", tmp_path, date="2026-05-01")
     with closing(sqlite3.connect(file)) as base:
@@ -82,6 +101,16 @@ def test_the_frame_is_an_undefined_cartesian_one_of_metres(tmp_path: Path) -> No
         assert base.execute("PRAGMA integrity_check").fetchone() == ("ok",)
         assert {srs for (srs,) in base.execute("SELECT srs_id FROM gpkg_contents")} == {-1}
         assert {date for (date,) in base.execute("SELECT last_change FROM gpkg_contents")} == {"2026-05-01T00:00:00Z"}
+
+
+def test_gdal_reads_every_layer_to_a_millimetre(tmp_path: Path) -> None:
+    file = once(demo(), "gpkg", tmp_path)
+    expected = tables(file)
+    assert {name for name, _ in pyogrio.list_layers(file)} == set(expected)
+    for name, features in expected.items():
+        _, _, blobs, _ = pyogrio.raw.read(file, layer=name)
+        apart = shapely.hausdorff_distance(shapely.from_wkb(blobs), [shape for shape, _ in features])
+        assert len(blobs) == len(features) and apart.max() < 1e-3
 
 
 def test_names_come_back_in_one_line(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from groundplan._cli.arguments import add_reading, number, reading
 from groundplan.export import FORMATS, OPTIONS, Format, Option, format_named
 
 if TYPE_CHECKING:
+    from groundplan._errors import GroundplanError
     from groundplan.maps import Map
     from groundplan.survey import Survey
 
@@ -111,9 +112,10 @@ def run(arguments: argparse.Namespace) -> None:
         if map is not None:
             given["map"] = map
         out = arguments.out or f"{file.parent / 'export'}{os.sep}"
-        written = write(survey, arguments.to, out, given, status)
+        written, refused = write(survey, arguments.to, out, given, status)
     if not arguments.quiet:
         terminal.put("".join(f"{file}\n" for file in written))
+    tell(refused)
 
 
 def _map(arguments: argparse.Namespace, survey: Survey, file: Path, given: dict[str, Any]) -> Map | None:
@@ -133,7 +135,7 @@ def _map(arguments: argparse.Namespace, survey: Survey, file: Path, given: dict[
         map = read(source, **{**survey.reading, **reading(arguments), **frame})
         agree(survey, map, file, source, arguments.quiet)
     except GroundplanError as fault:
-        if arguments.map is not None or "must" in uses:
+        if arguments.map is not None or ("must" in uses and len(arguments.to) < len(FORMATS)):
             raise
         if not arguments.quiet:
             terminal.say("warning", f"written without the map's pixels: {fault}")
@@ -141,21 +143,71 @@ def _map(arguments: argparse.Namespace, survey: Survey, file: Path, given: dict[
     return map
 
 
+#: Formats that were not written, and why.
+Refused = dict[str, "GroundplanError"]
+
+
+def ready(forms: list[Format], given: dict[str, Any]) -> Refused:
+    """Refuse what can be refused before the first is written; of all formats, leave out those that lack something."""
+    from groundplan._errors import GroundplanError
+    from groundplan.export import prepare
+
+    missing: Refused = {}
+    for form in forms:
+        try:
+            prepare([form], _own(form, given))
+        except GroundplanError as fault:
+            if fault.code not in ("extra.missing", "export.map") or len(forms) < len(FORMATS):
+                raise
+            missing[form.name] = fault
+    return missing
+
+
 def write(
     survey: Survey, forms: list[Format], out: str | Path, given: dict[str, Any], status: terminal.Status
-) -> list[Path]:
-    """Write the formats, each with the options that it takes; what can be refused is so before the first."""
-    from groundplan.export import export, prepare
+) -> tuple[list[Path], Refused]:
+    """Write formats, each with the options that it takes; of several, one that cannot say this survey stops none."""
+    from groundplan._errors import FormatError
+    from groundplan.export import export
 
-    own = [{k: v for k, v in given.items() if k in form.options or (k == "map" and form.map != "no")} for form in forms]
-    for form, mine in zip(forms, own, strict=True):
-        prepare([form], mine)
+    refused = ready(forms, given)
     place = out if len(forms) == 1 else f"{out}{os.sep}"
     written: list[Path] = []
-    for form, mine in zip(forms, own, strict=True):
+    for form in forms:
+        if form.name in refused:
+            continue
         status(f"writing {form.name}")
-        written += export(survey, place, form, **mine)
-    return written
+        try:
+            written += export(survey, place, form, **_own(form, given))
+        except FormatError as fault:
+            if len(forms) == 1 or not fault.code.startswith("export."):
+                raise
+            refused[form.name] = fault
+    return written, refused
+
+
+def _own(form: Format, given: dict[str, Any]) -> dict[str, Any]:
+    """The options that a format takes."""
+    return {k: v for k, v in given.items() if k in form.options or (k == "map" and form.map != "no")}
+
+
+def tell(refused: Refused) -> None:
+    """Say which formats were not written and why, and end as the first of them would by itself.
+
+    Raises
+    ------
+    GroundplanError
+        Where there are any.
+    """
+    hints = set()
+    for name, fault in refused.items():
+        terminal.say("refused", f"{name}: {fault}")
+        if fault.hint not in hints:
+            terminal.say("hint", fault.hint)
+            hints.add(fault.hint)
+    if refused:
+        first = next(iter(refused.values()))
+        raise type(first)(first.code, f"not written: {', '.join(refused)}")
 
 
 def listed() -> str:
@@ -163,7 +215,7 @@ def listed() -> str:
     rows = []
     for form in FORMATS.values():
         rows.append((form.name, form.holds))
-        rows.append(("", f"for {form.readers}"))
+        rows.append(("", f"for {form.readers}; tested with {form.tested}"))
         told = [f"--{name.replace('_', '-')}" for name in form.options] + ["--map"] * (form.map != "no")
         rows.append(("", f"NAME{form.suffix}{'; takes ' if told else ''}{', '.join(told)}"))
         if form.extra:

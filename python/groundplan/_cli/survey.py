@@ -12,7 +12,6 @@ from groundplan._cli.arguments import add_reading, count, number, numbers, place
 from groundplan._cli.export import formats
 
 if TYPE_CHECKING:
-    from groundplan.export import Format
     from groundplan.maps import Map
     from groundplan.survey import Survey
 
@@ -138,11 +137,10 @@ def run(arguments: argparse.Namespace) -> None:
     import dataclasses
 
     import groundplan
-    from groundplan.export import prepare
+    from groundplan._cli import export
 
     chosen, given = settings(arguments), reading(arguments)
-    for form in arguments.export:  # what is not installed is told before the work
-        prepare([form], {} if form.map == "no" else {"map": ...})
+    export.ready(arguments.export, {"map": ...})  # what is not installed is told before the work
     origin = arguments.origin
     if origin is not None and len(origin) not in (2, 3):
         arguments.parser.error(f"--origin has {len(origin)} numbers; it takes 2 or 3: X Y [YAW]")
@@ -158,7 +156,12 @@ def run(arguments: argparse.Namespace) -> None:
         named = dataclasses.replace(found.map, image=printable(arguments.name or found.map.image))
         out = directory(arguments)
         found = dataclasses.replace(found, map=named, source=seen_from(out or Path(), arguments.map), reading=given)
-        written = [] if out is None else write(out, found, map, status, arguments.figures, arguments.export)
+        written = [] if out is None else write(out, found, map, status, arguments.figures)
+        refused: export.Refused = {}
+        if arguments.export:
+            place = f"{Path(out or '') / 'export'}{os.sep}"
+            files, refused = export.write(found, arguments.export, place, {"map": map}, status)
+            written += [str(file) for file in files]
     if arguments.json:
         terminal.put(found.to_json())
     if not arguments.quiet:
@@ -170,6 +173,7 @@ def run(arguments: argparse.Namespace) -> None:
             terminal.say("warning", f"{warning.message} [{warning.code}]")
         for file in written:
             terminal.say("wrote", file)
+    export.tell(refused)
 
 
 def refuse_nothing(map: Map, name: str) -> None:
@@ -216,11 +220,8 @@ def seen_from(out: Path, map: str) -> str:
     return printable(Path(relative).as_posix())
 
 
-def write(
-    out: Path, survey: Survey, map: Map, status: terminal.Status, figures: bool, forms: list[Format]
-) -> list[str]:
+def write(out: Path, survey: Survey, map: Map, status: terminal.Status, figures: bool) -> list[str]:
     """Write the files; the names of what was written."""
-    from groundplan._cli import export
     from groundplan._files import whole
     from groundplan.figures import draw_survey
 
@@ -236,8 +237,4 @@ def write(
         status("drawing the figures")
         drawn = draw_figures(survey, map, out / "figures", progress=lambda what: status(f"drawing {what}"))
         written.append(f"{out / 'figures'}{os.sep} ({len(drawn)} files)")
-    if forms:
-        written += [
-            str(file) for file in export.write(survey, forms, f"{out / 'export'}{os.sep}", {"map": map}, status)
-        ]
     return written

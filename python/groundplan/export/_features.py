@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 
 from groundplan.export._places import Place, places
+from groundplan.roadmap import RoadMap, road_map
 
 if TYPE_CHECKING:
     from groundplan.survey import Survey
@@ -57,8 +58,11 @@ class Layer:
             yield shape, {name: values[n] for name, values in self.columns.items()}
 
 
-def layers(survey: Survey) -> list[Layer]:
-    """All layers, from what is drawn below to what is drawn above; those without features are left out."""
+def layers(survey: Survey, **roads: Any) -> list[Layer]:
+    """All layers, from what is drawn below to what is drawn above; those without features are left out.
+
+    ``roads`` as in `groundplan.roadmap.road_map`.
+    """
     found = places(survey)
     made = [
         _faces(survey),
@@ -68,6 +72,7 @@ def layers(survey: Survey) -> list[Layer]:
         _axes(found),
         *(_places(name, KINDS[name], found) for name in ("doors", "pillars")),
         *_graph(survey),
+        *_roads(road_map(survey, **roads)),
     ]
     return [layer for layer in made if layer.shapes]
 
@@ -145,6 +150,7 @@ def _values(place: Place, found: list[Place]) -> dict[str, Any]:
         "label": place.label,
         "use": place.use,
         "width": float("nan") if place.width is None else place.width,
+        "area": float("nan") if place.area is None else place.area,
         "region": "" if place.region is None else found[place.region].id,
     }
 
@@ -159,3 +165,35 @@ def _graph(survey: Survey) -> Iterator[Layer]:
         line = shapely.LineString([centres[a], centres[b]])
         links.add(line, id=n, face_a=a, face_b=b, edge=edge, connected=bool(dual.connected[n]))
     yield from (nodes, links)
+
+
+def _roads(roads: RoadMap) -> Iterator[Layer]:
+    """The road map: zones, lanes with their free widths, nodes, and pick faces with the node that serves them."""
+    zones, lanes = Layer("road_zones", "Polygon"), Layer("road_lanes", "LineString")
+    nodes, faces = Layer("road_nodes", "Point"), Layer("pick_faces", "Point")
+    for zone in roads.zones:
+        zones.add(shapely.Polygon(zone.ring), id=zone.id, kind=zone.kind, name=zone.name, speed=_or_nan(zone.speed))
+    for lane in roads.lanes:
+        start, end = roads.nodes[lane.start], roads.nodes[lane.end]
+        lanes.add(
+            shapely.LineString([start.at, end.at]),
+            id=lane.id,
+            name=lane.name,
+            kind=lane.kind,
+            start=start.id,
+            end=end.id,
+            left=lane.left,
+            right=lane.right,
+            speed=_or_nan(lane.speed),
+            way=lane.way,
+        )
+    for node in roads.nodes:
+        nodes.add(shapely.Point(node.at), id=node.id, name=node.name, kind=node.kind, type=node.type)
+    for face in roads.faces:
+        serves = {"id": face.id, "node": roads.nodes[face.node].id}
+        faces.add(shapely.Point(face.at), **serves, heading=face.heading, width=face.width)
+    yield from (zones, lanes, nodes, faces)
+
+
+def _or_nan(value: float | None) -> float:
+    return float("nan") if value is None else value

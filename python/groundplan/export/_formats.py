@@ -25,6 +25,8 @@ class Format:
         What is in it.
     readers : str
         Who reads it.
+    tested : str
+        What the tests read it back with.
     options : tuple of str
         Names from OPTIONS that its ``write`` takes.
     needs : tuple of str
@@ -39,6 +41,7 @@ class Format:
     suffix: str
     holds: str
     readers: str
+    tested: str
     options: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
     extra: str | None = None
@@ -94,6 +97,7 @@ FORMATS: dict[str, Format] = {
             ".places.csv",
             "a table of places: name, kind, polygon as WKT, centre, width, neighbours",
             "warehouse management systems, spreadsheets, QGIS as delimited text",
+            "Python's csv, shapely",
             needs=("shapely",),
             extra="fleet",
         ),
@@ -102,6 +106,7 @@ FORMATS: dict[str, Format] = {
             ".dxf",
             "a drawing: walls, racks, regions, centre lines, road map, names, the map beneath it",
             "AutoCAD, BricsCAD, LibreCAD, QCAD, FreeCAD and layout tools of AGVs; they save it as DWG",
+            "ezdxf's audit, GDAL, LibreCAD",
             options=("units", "layers", *ROADS),
             needs=("networkx", "shapely"),
             extra="fleet",
@@ -112,24 +117,29 @@ FORMATS: dict[str, Format] = {
             ".local.geojson",
             "every layer in one collection; with an anchor in true longitude and latitude, and named .geojson",
             "QGIS, GDAL, web maps",
-            options=("anchor",),
-            needs=("shapely", "pyproj"),
+            "GDAL, the rules of RFC 7946",
+            options=("anchor", *ROADS),
+            needs=("shapely", "pyproj", "networkx"),
             extra="gis",
+            map="may",
         ),
         Format(
             "gpkg",
             ".gpkg",
-            "a GeoPackage: faces, regions, corridors, junctions, racks, lines, walls, doors, the graph as layers",
+            "a GeoPackage: faces, regions, corridors, racks, lines, walls, doors, graph and road map as layers",
             "QGIS, GDAL, ArcGIS",
-            options=("date",),
-            needs=("pyogrio", "shapely"),
+            "SQLite, GDAL, QGIS",
+            options=("date", *ROADS),
+            needs=("pyogrio", "shapely", "networkx"),
             extra="gis",
+            map="may",
         ),
         Format(
             "graphml",
             ".graphml",
             "the graph of places, faces or roads as GraphML",
             "networkx, Gephi, yEd, Cytoscape, igraph",
+            "networkx",
             options=("graph", *ROADS),
             needs=("networkx", "shapely"),
             extra="fleet",
@@ -140,6 +150,7 @@ FORMATS: dict[str, Format] = {
             ".ifc",
             "a building model, IFC4: spaces, walls, racks, pillars, doors, space boundaries; heights are invented",
             "Revit, ArchiCAD, FreeCAD, Bonsai, IfcOpenShell",
+            "IfcOpenShell's validation with all rules",
             options=("date", "height"),
             needs=("ifcopenshell", "shapely"),
             extra="bim",
@@ -149,6 +160,7 @@ FORMATS: dict[str, Format] = {
             ".indoor.gml",
             "IndoorGML 1.1: cells, boundaries, and their dual graph",
             "research on indoor navigation",
+            "a grammar of OGC 19-011r4, networkx",
             options=("graph",),
             needs=("shapely",),
             extra="gis",
@@ -158,6 +170,7 @@ FORMATS: dict[str, Format] = {
             ".graph.json",
             "the graph of places, faces or roads as node-link JSON",
             "networkx, D3, any program",
+            "networkx",
             options=("graph", *ROADS),
             needs=("networkx", "shapely"),
             extra="fleet",
@@ -168,6 +181,7 @@ FORMATS: dict[str, Format] = {
             ".keepout.yaml",
             "Nav2's keep-out mask of racks, walls, pillars and closed ways (YAML, PGM), and its servers' parameters",
             "Nav2's map server and keep-out filter",
+            "the map server's rules",
             options=("keep", "rules"),
             needs=("shapely",),
             extra="fleet",
@@ -177,6 +191,7 @@ FORMATS: dict[str, Format] = {
             ".lif.json",
             "the road map as VDMA LIF 1.0.0: nodes, directed edges, stations at pick faces",
             "master controls of VDA 5050 fleets, LIF editors",
+            "the VDMA's schema",
             options=("date", "vehicle_type", *ROADS),
             needs=("networkx", "shapely"),
             extra="fleet",
@@ -187,6 +202,7 @@ FORMATS: dict[str, Format] = {
             ".route.geojson",
             "the road map as a route graph",
             "the Nav2 Route Server, its RViz panel, QGIS",
+            "the graph loader's rules, Nav2's own graphs",
             options=ROADS,
             needs=("networkx", "shapely"),
             extra="fleet",
@@ -197,6 +213,7 @@ FORMATS: dict[str, Format] = {
             ".opentcs.xml",
             "the road map as a plant model of openTCS 7: points, paths, locations, blocks",
             "openTCS",
+            "openTCS's XSD",
             options=ROADS,
             needs=("networkx", "shapely"),
             extra="fleet",
@@ -207,6 +224,7 @@ FORMATS: dict[str, Format] = {
             ".report.pdf",
             "a report: the plan, the figures that the map allows, a table of places, warnings",
             "people, on paper and on screens",
+            "poppler",
             options=("date",),
             needs=("shapely",),
             extra="fleet",
@@ -217,6 +235,7 @@ FORMATS: dict[str, Format] = {
             ".building.yaml",
             "lanes, walls and floor in Cartesian metres",
             "Open-RMF's traffic editor, rmf_site, building_map_tools",
+            "the rules of building_map_tools",
             options=ROADS,
             needs=("networkx", "shapely"),
             extra="fleet",
@@ -227,6 +246,7 @@ FORMATS: dict[str, Format] = {
             ".nav.yaml",
             "the road map as a navigation graph",
             "Open-RMF's fleet adapters",
+            "the rules of the fleet adapter's parser",
             options=ROADS,
             needs=("networkx", "shapely"),
             extra="fleet",
@@ -237,6 +257,7 @@ FORMATS: dict[str, Format] = {
             ".speed.yaml",
             "Nav2's speed mask (YAML, PGM), and its servers' parameters; without rules half the speed at junctions",
             "Nav2's map server and speed filter",
+            "the map server's and the filter's rules",
             options=("rules", "max_speed"),
             needs=("shapely",),
             extra="fleet",
@@ -246,6 +267,7 @@ FORMATS: dict[str, Format] = {
             ".straight.yaml",
             "the map turned so that its strongest direction is the x axis (YAML, PGM), and the turn both ways (JSON)",
             "map_server, Nav2, AMCL, every planner on grids",
+            "Pillow, and surveyed again",
             map="must",
         ),
         Format(
@@ -253,6 +275,7 @@ FORMATS: dict[str, Format] = {
             ".plan.svg",
             "the plan to scale, a layer for each kind, with legend and scale bar; the map beneath it where it is given",
             "browsers, Inkscape, Illustrator, any drawing program",
+            "lxml, librsvg",
             options=("scale",),
             needs=("shapely",),
             extra="fleet",
@@ -263,6 +286,7 @@ FORMATS: dict[str, Format] = {
             ".zones.json",
             "a zone set of VDA 5050 3.0: blocked, directed and slow zones",
             "VDA 5050 vehicles and master controls",
+            "the VDA 5050 schema",
             options=("date", *ROADS),
             needs=("networkx", "shapely"),
             extra="fleet",
@@ -273,6 +297,7 @@ FORMATS: dict[str, Format] = {
             ".vector_objects.yaml",
             "racks and pillars as polygons and circles to keep out of, as parameters",
             "Nav2's Vector Object Server",
+            "the server's own sample",
             needs=("shapely",),
             extra="fleet",
         ),

@@ -41,7 +41,7 @@ def _places(survey: Survey) -> networkx.Graph[Any]:
     made: networkx.Graph[Any] = networkx.Graph(frame="map", units="m", map=one_line(survey.map.image))
     found = places(survey)
     for place in found:
-        numbers = {"width": place.width, "area": None if place.shape is None else round(place.shape.area, 6)}
+        numbers = {"width": place.width, "area": place.area}
         texts = {"use": place.use, "region": "" if place.region is None else found[place.region].id}
         made.add_node(
             place.id,

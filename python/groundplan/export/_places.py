@@ -46,6 +46,8 @@ class Place:
         Two points, metres.
     width : float or None
         As the label has it, metres.
+    area : float or None
+        As the label has it, square metres: of a region its free floor. Else the outline's.
     region : int or None
         The label id of the region that holds its centre.
     neighbours : list of int
@@ -61,6 +63,7 @@ class Place:
     centre: tuple[float, float]
     axis: list[tuple[float, float]] | None
     width: float | None
+    area: float | None
     region: int | None = None
     neighbours: list[int] = field(default_factory=list)
 
@@ -139,17 +142,19 @@ def _centre(label: Label) -> tuple[float, float]:
 
 def _place(n: int, id: str, name: str, label: Label) -> Place:
     axis = label.get("axis")
-    width = label.get("width")
+    width, shape = label.get("width"), outline(label)
+    area = label.get("area", None if shape is None else shape.area)
     return Place(
         label=n,
         id=id,
         name=name,
         kind=label["kind"],
         use=str(label.get("use", label.get("type", ""))),
-        shape=outline(label),
+        shape=shape,
         centre=_centre(label),
         axis=None if axis is None else [(float(x), float(y)) for x, y in axis],
         width=None if width is None else float(width),
+        area=None if area is None else round(float(area), 6),
     )
 
 

@@ -43,7 +43,7 @@ def _row(place: Place, found: list[Place]) -> list[str]:
         _metres(place.centre[1]),
         _metres(place.width),
         _metres(length),
-        _metres(None if place.shape is None else place.shape.area),
+        _metres(place.area),
         "" if place.region is None else found[place.region].id,
         ";".join(found[n].id for n in place.neighbours),
         "" if place.shape is None else shapely.to_wkt(place.shape, rounding_precision=3),

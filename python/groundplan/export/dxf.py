@@ -158,7 +158,7 @@ class _Plan(Drawing):
 def _attributes(place: Place, found: list[Place]) -> dict[str, str]:
     region = "" if place.region is None else found[place.region].id
     width = "" if place.width is None else f"{place.width:.3f}"
-    area = "" if place.shape is None else f"{place.shape.area:.3f}"
+    area = "" if place.area is None else f"{place.area:.3f}"
     return dict(zip(PLACE, (place.id, place.name, place.kind, place.use, width, area, region), strict=True))
 
 

@@ -26,7 +26,7 @@ LOCAL, TRUE = ".local.geojson", ".geojson"
 HINT = "such as 57.7,11.97,90: the map frame's x axis points east"
 
 
-def write(survey: Survey, path: Path, anchor: tuple[float, ...] | None = None) -> list[Path]:
+def write(survey: Survey, path: Path, anchor: tuple[float, ...] | None = None, **roads: Any) -> list[Path]:
     """Write all layers as features with the member ``layer`` among their properties.
 
     Parameters
@@ -36,6 +36,8 @@ def write(survey: Survey, path: Path, anchor: tuple[float, ...] | None = None) -
     anchor
         Latitude and longitude of the map frame's origin, degrees in WGS 84, and the heading of its x axis, degrees
         clockwise from north.
+    **roads
+        Options of `groundplan.roadmap.road_map`.
 
     Raises
     ------
@@ -49,26 +51,19 @@ def write(survey: Survey, path: Path, anchor: tuple[float, ...] | None = None) -
     else:
         place, head, digits = None, {"frame": "map", "units": "m"}, 6
     features = []
-    for layer in layers(survey):
+    for layer in layers(survey, **roads):
         shapes = np.array(layer.shapes, dtype=object)
         if place is not None:
             shapes = shapely.transform(shapes, place)
-        for (_, values), shape in zip(layer.features(), shapes, strict=True):
+        texts = shapely.to_geojson(shapely.transform(shapes, lambda points: points.round(digits)))
+        for (_, values), text in zip(layer.features(), texts, strict=True):
             known = {key: value for key, value in values.items() if value == value}  # NaN is no JSON
-            features.append({"type": "Feature", "properties": {"layer": layer.name} | known} | _geometry(shape, digits))
-    rows = ",\n".join(json.dumps(feature, ensure_ascii=False) for feature in features)
+            said = json.dumps({"layer": layer.name} | known, ensure_ascii=False)
+            features.append(f'{{"type": "Feature", "properties": {said}, "geometry": {text}}}')
+    rows = ",\n".join(features)
     members = "".join(f"{json.dumps(key)}: {json.dumps(value)},\n" for key, value in head.items())
     write_text(path, f'{{"type": "FeatureCollection",\n{members}"features": [\n{rows}\n]}}\n')
     return [path]
-
-
-def _geometry(shape: Any, digits: int) -> dict[str, Any]:
-    tree = shapely.geometry.mapping(shape)
-    return {"geometry": {"type": tree["type"], "coordinates": _rounded(tree["coordinates"], digits)}}
-
-
-def _rounded(part: Any, digits: int) -> Any:
-    return round(part, digits) if isinstance(part, float) else [_rounded(inner, digits) for inner in part]
 
 
 def _anchored(anchor: tuple[float, ...]) -> Any:

@@ -22,15 +22,17 @@ if TYPE_CHECKING:
     from groundplan.survey import Survey
 
 
-def write(survey: Survey, path: Path, date: str | datetime | None = None) -> list[Path]:
-    """Write all layers; `date` is what the file says it was changed last."""
+def write(survey: Survey, path: Path, date: str | datetime | None = None, **roads: Any) -> list[Path]:
+    """Write all layers; `date` is when the file says it was changed last, `roads` are options of `road_map`."""
     import pyogrio
 
-    found = layers(survey)
+    found = layers(survey, **roads)
     said = moment(date).strftime("%Y-%m-%dT%H:%M:%SZ")
-    before = {"OGR_CURRENT_DATE": pyogrio.get_gdal_config_option("OGR_CURRENT_DATE")}
+    # A file that is renamed into place when it is whole need not be so after each layer.
+    own = {"OGR_CURRENT_DATE": said, "OGR_SQLITE_SYNCHRONOUS": "OFF"}
+    before = {name: pyogrio.get_gdal_config_option(name) for name in own}
     try:
-        pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": said})
+        pyogrio.set_gdal_config_options(own)
         with whole(path) as beside:
             beside.unlink()  # GDAL adds layers to a file that is there, and an empty one is none
             for layer in found:

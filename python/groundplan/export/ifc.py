@@ -71,7 +71,8 @@ def _space(model: Model, place: Place) -> Any:
         PredefinedType="INTERNAL",
         **model.body(place.shape, model.height),
     )
-    model.quantities(space, "Qto_SpaceBaseQuantities", NetFloorArea=place.shape.area, Height=model.height)
+    areas = {"GrossFloorArea": place.shape.area, "NetFloorArea": place.area or 0.0}
+    model.quantities(space, "Qto_SpaceBaseQuantities", **areas, Height=model.height)
     return space
 
 

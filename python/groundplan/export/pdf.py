@@ -96,8 +96,7 @@ def _reach(survey: Survey, found: list[Place]) -> npt.NDArray[np.float64]:
 
 def _row(place: Place, found: list[Place]) -> list[str]:
     length = None if place.axis is None else float(shapely.LineString(place.axis).length)
-    area = None if place.shape is None else float(place.shape.area)
     kind = f"{place.kind} ({place.use})" if place.use and place.use != place.kind else place.kind
-    numbers = ["" if value is None else f"{value:.2f}" for value in (place.width, length, area)]
+    numbers = ["" if value is None else f"{value:.2f}" for value in (place.width, length, place.area)]
     region = "" if place.region is None else found[place.region].name
     return [place.name, kind, *numbers, region, ", ".join(found[n].name for n in place.neighbours)]

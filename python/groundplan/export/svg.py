@@ -135,7 +135,7 @@ def _title(place: Place) -> str:
     kind = JUNCTION_NAMES.get(place.use, "Junction").lower() if place.kind == "junction" else place.use or place.kind
     parts = [place.name, kind]
     parts += [f"{place.width:.2f} m wide"] if place.width else []
-    parts += [f"{place.shape.area:.1f} m²"] if place.kind == "region" and place.shape is not None else []
+    parts += [f"{place.area:.1f} m²"] if place.kind == "region" and place.area is not None else []
     return ", ".join(parts)
 
 
