@@ -109,6 +109,25 @@ def test_a_scrap_beside_a_wall_does_not_lengthen_it() -> None:
     assert spans(wall((60, 180), (186, 188)), (20.0, 220.0)) == [pytest.approx([60, 180], abs=1.5)]
 
 
+@pytest.mark.parametrize("between", [(110, 130, 140), (107, 110, 117)])
+@pytest.mark.parametrize("origin", [(0.0, 0.0), (0.013, 0.02), (10.0, 20.0), (-7.77, 3.1), (565000.0, 5929980.8)])
+def test_a_gap_just_at_the_bound_is_no_opening_wherever_the_origin_lies(
+    between: tuple[int, int, int], origin: tuple[float, float]
+) -> None:
+    # A pixel covers the one beside it: gaps of 10 are 0.4 m, and those of 7 are as wide as the 3 pixels between them.
+    start, end, again = between
+    x, y = origin
+    survey = groundplan.survey(
+        wall((30, 100), (start, end), (again, 210)),
+        resolution=RESOLUTION,
+        origin=origin,
+        directions=groundplan.Directions.of([0.0, -np.pi / 2]),
+        lines=groundplan.Lines.of([0, 1, 1], np.array([50.0, 20.0, 220.0]) * RESOLUTION + [y, x, x]),
+    )
+    along = survey.walls.points.reshape(-1, 2, 2)[survey.walls.lines == 0, :, 0] - x
+    assert np.sort(along) / RESOLUTION == pytest.approx(np.array([[30, 210]]), abs=1.5)
+
+
 def test_a_door_is_open_in_the_zoo() -> None:
     survey = zoo.surveyed("two_rooms_with_door")
     ends = survey.walls.points.reshape(-1, 2, 2) / RESOLUTION

@@ -77,7 +77,8 @@ pub fn find_walls(subdivision: &Subdivision, occupancy: &Occupancy, parameters: 
         }
     };
     let kinds: Vec<Option<WallKind>> = (0..disparity.len()).map(kind).collect();
-    let evidence = Evidence { subdivision, occupancy, kinds: &kinds, min_opening: parameters.walls_min_opening };
+    let min_opening = parameters.walls_min_opening + SAME;
+    let evidence = Evidence { subdivision, occupancy, kinds: &kinds, min_opening };
     Walls { walls: evidence.walls(), cogent, disparity }
 }
 
@@ -87,6 +88,8 @@ struct Evidence<'a> {
     occupancy: &'a Occupancy,
     /// Of the cogent edges.
     kinds: &'a [Option<WallKind>],
+    /// What is no wider is no opening: by a rounding's breadth above the parameter, since gaps are whole pixels and
+    /// one just as wide would be one or not by where the origin lies.
     min_opening: f64,
 }
 
@@ -166,7 +169,7 @@ impl Evidence<'_> {
         let counts = |n: usize| {
             let length = distance(pieces[n][0].points[0], pieces[n][pieces[n].len() - 1].points[1]);
             let beside = [n.checked_sub(1), Some(n)].into_iter().flatten();
-            beside.filter_map(|n| gaps.get(n)).all(|&gap| gap > self.min_opening || gap <= length)
+            beside.filter_map(|n| gaps.get(n)).all(|&gap| gap > self.min_opening || gap <= length + SAME)
         };
         (0..pieces.len()).filter(|&n| counts(n)).flat_map(|n| pieces[n]).copied().collect()
     }
