@@ -150,6 +150,13 @@ def test_a_name_stands_in_the_widest_gap_between_crossings() -> None:
     assert room == 7.0
 
 
+def test_a_name_is_read_from_below_or_from_the_right_and_not_from_the_left() -> None:
+    assert [_names.readable(angle) for angle in (0.0, 12.0, 180.0, -168.0, 225.0)] == [0.0, 12.0, 0.0, 12.0, 45.0]
+    assert [_names.readable(angle) for angle in (90.0, -90.0, 89.9, 270.0)] == [90.0, 90.0, 89.9, 90.0]
+    assert _names.readable(-89.9) == pytest.approx(90.1)
+    assert _names.readable(-78.0) == -78.0
+
+
 def test_centre_lines_that_cross_are_known() -> None:
     line = np.array([[0.0, 0.0], [10.0, 0.0]])
     across, parallel, short = ([[4.0, -1.0], [4.0, 1.0]], [[0.0, 1.0], [9.0, 1.0]], [[7.0, 1.0], [7.0, 0.5]])

@@ -19,7 +19,7 @@ from matplotlib.textpath import TextPath
 from matplotlib.transforms import IdentityTransform
 
 from groundplan.figures import _style as ink
-from groundplan.figures._names import AxesNames, Names, meetings, widest_gap
+from groundplan.figures._names import AxesNames, Names, meetings, readable, widest_gap
 from groundplan.survey import Label, Survey
 
 Points = npt.NDArray[np.float64]
@@ -174,7 +174,7 @@ def name_corridors(corridors: Sequence[Label], junctions: Sequence[Label], names
         size = min(0.62 * corridor["width"] * names.dots, room * names.dots / (0.72 * len(name)), GREATEST_TYPE)
         if size >= LEAST_TYPE:
             angle = math.degrees(math.atan2(*(line[-1] - line[0])[::-1]))
-            names.write(middle, name, size, ink.CORRIDOR_INK, 7, (angle + 90.001) % 180 - 90.001)
+            names.write(middle, name, size, ink.CORRIDOR_INK, 7, readable(angle))
 
 
 def draw_junctions(axes: Axes, junctions: Sequence[Label], corridors: Sequence[Label], names: Names) -> None:
