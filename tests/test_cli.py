@@ -89,7 +89,11 @@ def test_no_command_shows_the_help_and_is_wrong_usage(capsys: Capture) -> None:
         ("evaluate", "SURVEY and its TRUTH", "groundplan evaluate --help"),
         ("evaluate s.json t.json --methods paper", "--methods goes with --suite", "groundplan evaluate --help"),
         ("evaluate s.json t.json --suite warehouses", "--suite makes its own surveys", "groundplan evaluate --help"),
-        ("evaluate --suite castles", "no suite 'castles'", "there are: names, offices, roadmaps, rooms, warehouses"),
+        (
+            "evaluate --suite castles",
+            "no suite 'castles'",
+            "there are: confidence, names, offices, roadmaps, rooms, warehouses",
+        ),
         ("evaluate --suite rooms --maps nowhere", "no maps with a ground truth in nowhere", "--maps DIR"),
         ("simulate office -o x --shape star", "invalid choice: 'star'", "groundplan simulate office --help"),
         ("evaluate --suite warehouses --methods magic", "labels.method cannot be", "paper"),
@@ -278,7 +282,7 @@ def test_simulate_prints_what_it_wrote_and_evaluate_scores_its_survey(tmp_path: 
     ran = call(capsys, "evaluate", "out/survey.json", "sim/truth.json", "--json")
     scores = json.loads(ran.out)
     assert scores["direction_error_deg"] < 1
-    ran = call(capsys, "evaluate", "out/survey.json", "sim/truth.json")
+    ran = call(capsys, "evaluate", "out", "sim/truth.json")
     assert ran.code == 0 and len(ran.out.splitlines()) == len(scores)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 from groundplan._cli import terminal
@@ -68,7 +69,7 @@ ROADS = {
 def fill(own: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     own.usage = "groundplan evaluate (SURVEY TRUTH | --suite NAME) [--json] [flags]"
-    own.add_argument("survey", metavar="SURVEY", nargs="?", help="a survey.json")
+    own.add_argument("survey", metavar="SURVEY", nargs="?", help="a survey.json, or the directory that holds it")
     own.add_argument("truth", metavar="TRUTH", nargs="?", help="a truth.json, as groundplan simulate writes it")
     own.add_argument("--json", action="store_true", help="print the scores as JSON")
     group = own.add_argument_group("a suite of maps")
@@ -103,9 +104,10 @@ def run(arguments: argparse.Namespace) -> None:
     for flag in ("methods", "workers", "maps"):
         if getattr(arguments, flag) is not None:
             arguments.parser.error(f"--{flag} goes with --suite")
+    from groundplan._cli.figures import survey_file
     from groundplan.evaluate import score
 
-    scores = score(arguments.survey, arguments.truth)
+    scores = score(survey_file(Path(arguments.survey)), arguments.truth)
     if arguments.json:
         _put_json(scores)
         return

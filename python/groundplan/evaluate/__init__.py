@@ -175,7 +175,9 @@ def score_regions(survey: Document, map: Map, truth: str | os.PathLike[str] | np
 def suites() -> list[str]:
     """Names of the suites that come with Groundplan."""
     here = resources.files("groundplan.evaluate")
-    return sorted(["rooms", *(f.name.removesuffix(".toml") for f in here.iterdir() if f.name.endswith(".toml"))])
+    return sorted(
+        ["confidence", "rooms", *(f.name.removesuffix(".toml") for f in here.iterdir() if f.name.endswith(".toml"))]
+    )
 
 
 def suite(name: str, maps: str | os.PathLike[str] | None = None) -> list[Case]:
@@ -185,7 +187,8 @@ def suite(name: str, maps: str | os.PathLike[str] | None = None) -> list[Case]:
     ----------
     name
         ``warehouses``, ``roadmaps``, ``offices`` and ``names`` (places of which several maps are made) are simulated,
-        ``rooms`` are the maps of Bormann et al. (2016), which are not ours to give away.
+        ``confidence`` is warehouses and offices together, ``rooms`` are the maps of Bormann et al. (2016), which are
+        not ours to give away.
     maps
         Where those lie: ``<name>.yaml`` and ``<name>_furnitures.yaml`` beside ``<name>.gt.png``. By default what the
         environment's GROUNDPLAN_ROOM_MAPS says, or ../shared/maps/bormann.
@@ -197,6 +200,8 @@ def suite(name: str, maps: str | os.PathLike[str] | None = None) -> list[Case]:
     """
     if name not in suites():
         raise ParameterError("suite.unknown", f"no suite {name!r}", f"there are: {', '.join(suites())}")
+    if name == "confidence":
+        return [*suite("warehouses"), *suite("offices")]
     if name == "rooms":
         return _rooms(Path(maps or os.environ.get(MAPS) or _BESIDE))
     text = (resources.files("groundplan.evaluate") / f"{name}.toml").read_text(encoding="utf-8")

@@ -9,11 +9,10 @@ import numpy as np
 
 from groundplan.evaluate._patterns import true_rack
 from groundplan.evaluate._scores import matched, optional, points
+from groundplan.survey import KINDS
 
 #: Upper ends of the bins.
 BINS = (0.25, 0.5, 0.75, 0.9, 1.0)
-#: Kinds of labels, in the table's order.
-KINDS = ("corridor", "junction", "rack", "region", "door", "pillar")
 
 _NEAR = {"junction": 1.5, "door": 0.6, "pillar": 0.5}  # metres between a label and the true one
 _CORRIDOR = 0.7  # least share of a corridor's area in true ones along it

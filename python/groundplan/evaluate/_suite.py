@@ -117,7 +117,7 @@ def reliability(
     """
     for module in ("scipy.optimize", "shapely"):
         _scores.optional(module)
-    cases = [*suite("warehouses"), *suite("offices")]
+    cases = suite("confidence")
     found = _each_case(_judged, cases, workers or cores(), progress or (lambda *_: None))
     return _reliability.table([entry for entries in found for entry in entries])
 
