@@ -183,6 +183,14 @@ def test_without_ways_it_is_said_what_was_sought() -> None:
     assert "labels.min_width = 7.5 to labels.max_width = 8 m" in said["no-labels"]
 
 
+def test_a_kind_of_label_that_there_is_not_is_no_empty_list() -> None:
+    room = zoo.surveyed("single_room")
+    assert room.of_kind("rack") == []
+    with pytest.raises(ParameterError, match="'corridr'") as refused:
+        room.of_kind("corridr")
+    assert refused.value.code == "label.kind" and "corridor" in str(refused.value.hint)
+
+
 def test_what_is_wrong_is_said_by_name() -> None:
     picture = ZOO["single_room"]()
     with pytest.raises(ParameterError, match=r"lines\.snt") as unknown:

@@ -11,6 +11,23 @@ at worst one face, and warnings.
 
 from __future__ import annotations
 
+_OF_A_YAML = "map_saver writes one: image, resolution, origin and thresholds, a line each"
+_SAVE_AGAIN = "it was cut short or damaged on its way: copy it again, or save the map again"
+
+#: What helps wherever a fault arises, by its code; who raises it may know better.
+_HINTS = {
+    "map.corrupt": _SAVE_AGAIN,
+    "map.empty": _SAVE_AGAIN,
+    "map.format": "groundplan survey --help names what can be read",
+    "map.header": _SAVE_AGAIN,
+    "map.image": _OF_A_YAML,
+    "map.truncated": _SAVE_AGAIN,
+    "map.yaml": _OF_A_YAML,
+    "survey.content": "groundplan survey makes it anew",
+    "survey.format": "groundplan survey MAP writes one",
+    "survey.json": "groundplan survey makes it anew",
+}
+
 
 class GroundplanError(Exception):
     """Base of all errors of Groundplan.
@@ -26,7 +43,7 @@ class GroundplanError(Exception):
     def __init__(self, code: str, message: str, hint: str | None = None) -> None:
         super().__init__(message)
         self.code = code
-        self.hint = hint
+        self.hint = hint or _HINTS.get(code)
 
 
 class MapError(GroundplanError):

@@ -7,6 +7,7 @@ import errno
 import os
 import tempfile
 from collections.abc import Iterator
+from difflib import get_close_matches
 from pathlib import Path
 
 from groundplan._errors import FormatError
@@ -57,16 +58,27 @@ def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
 
 def unwritable(path: Path, fault: OSError) -> FormatError:
     """The one text for a place that cannot be written."""
-    return FormatError("file.write", f"cannot write {path}: {fault.strerror or fault}")
+    return FormatError("file.write", f"cannot write {path}: {fault.strerror or fault}", "choose another place for it")
 
 
 def unreadable(code: str, path: str | os.PathLike[str], fault: OSError) -> FormatError:
     """The one text for a file of ours that cannot be read."""
     if isinstance(fault, FileNotFoundError):
-        return FormatError(code, absent(path))
+        return FormatError(code, absent(path), nearest(path))
     return FormatError(code, f"cannot read {os.fspath(path)}: {fault.strerror or fault}")
 
 
 def absent(path: str | os.PathLike[str]) -> str:
     """The one text for a file that is not there."""
     return f"{os.fspath(path)} does not exist"
+
+
+def nearest(path: str | os.PathLike[str]) -> str:
+    """What helps to find a file that is not there: the name beside it that is most like it, or where it was sought."""
+    wanted = Path(path)
+    try:
+        beside = sorted(entry.name for entry in wanted.parent.iterdir())
+    except OSError:
+        return f"there is no directory {wanted.parent}"
+    like = get_close_matches(wanted.name, beside, 1)
+    return f"did you mean {wanted.with_name(like[0])}?" if like else f"it was sought in {wanted.parent.absolute()}"

@@ -165,10 +165,14 @@ class Queries:
         if not (math.isfinite(x) and math.isfinite(y)):
             raise ParameterError("point.finite", f"the point ({x}, {y}) is not finite")
         if self.locator.locate(x, y) is None:
-            raise ParameterError("route.outside", f"({x:g}, {y:g}) lies outside the map")
+            low, high = self.survey.subdivision.vertices.min(axis=0), self.survey.subdivision.vertices.max(axis=0)
+            within = f"it reaches from ({low[0]:.2f}, {low[1]:.2f}) to ({high[0]:.2f}, {high[1]:.2f})"
+            raise ParameterError("route.outside", f"({x:g}, {y:g}) lies outside the map", within)
         if not ways.is_open(x, y):
             nearest = ways.nearest(x, y, 2.0)
-            hint = f"the nearest point that is, is ({nearest[0]:.2f}, {nearest[1]:.2f})" if nearest else None
+            hint = "a smaller clearance may leave room"
+            if nearest:
+                hint = f"the nearest point that is, is ({nearest[0]:.2f}, {nearest[1]:.2f})"
             said = f"({x:g}, {y:g}) is not free and {clearance:g} m from what is occupied"
             raise ParameterError("route.blocked", said, hint)
         return x, y

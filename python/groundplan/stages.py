@@ -480,7 +480,7 @@ def find_labels(
     threads: int | None = None,
     **parameters: Any,
 ) -> list[dict[str, Any]]:
-    """II-E: what is what, as the survey's JSON has it: corridors, junctions, racks."""
+    """II-E: what is what, as the survey's JSON has it: corridors, junctions, racks, regions, doors, pillars."""
     grid = layout(needs(Map, "map", map))
     cut = taken(Directions, "directions", directions), taken(Lines, "lines", lines)
     measured = taken(Occupancy, "occupancy", occupancy), taken(Walls, "walls", walls)

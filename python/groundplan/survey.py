@@ -49,6 +49,9 @@ _MANY = (np.ndarray, list, tuple)
 
 STATES = ("free", "occupied", "unknown")
 
+#: The kinds of labels.
+KINDS = ("corridor", "junction", "rack", "region", "door", "pillar")
+
 #: What a label of a kind must have besides its kind.
 NEEDED = {"corridor": ("polygon", "axis", "width"), "junction": ("type", "at")}
 
@@ -129,8 +132,17 @@ class Survey(Stage):
         return found
 
     def of_kind(self, kind: str) -> list[Label]:
-        """The labels of one kind, such as ``corridor``."""
-        return [label for label in self.labels if label["kind"] == kind]
+        """The labels of one kind: ``corridor``, ``junction``, ``rack``, ``region``, ``door`` or ``pillar``.
+
+        Raises
+        ------
+        ParameterError
+            ``label.kind`` for a kind that there is not.
+        """
+        found = [label for label in self.labels if label["kind"] == kind]
+        if not found and kind not in KINDS:
+            raise ParameterError("label.kind", f"no label is of kind {kind!r}", f"there are {', '.join(KINDS)}")
+        return found
 
     def __getstate__(self) -> dict[str, Any]:
         """What is copied and pickled: the fields, and neither index nor map."""

@@ -67,6 +67,11 @@ def run(arguments: argparse.Namespace) -> None:
         terminal.put("".join(f"{path}\n" for path in drawn))
 
 
+def survey_file(given: Path) -> Path:
+    """A survey's file, given that or its directory."""
+    return given / "survey.json" if given.is_dir() else given
+
+
 def open_survey(given: Path) -> tuple[Path, Survey]:
     """A survey's file, given that or its directory, and what is in it; errors name the file.
 
@@ -77,11 +82,11 @@ def open_survey(given: Path) -> tuple[Path, Survey]:
     """
     from groundplan.survey import Survey
 
-    file = given / "survey.json" if given.is_dir() else given
+    file = survey_file(given)
     try:
         return file, Survey.read(file)
     except FormatError as fault:
-        named = fault if fault.code == "survey.read" else FormatError(fault.code, f"{file}: {fault}")
+        named = fault if fault.code == "survey.read" else FormatError(fault.code, f"{file}: {fault}", fault.hint)
         raise named from fault
 
 

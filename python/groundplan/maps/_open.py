@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import BinaryIO, Literal
 
 from groundplan._errors import MapError
-from groundplan._files import absent
+from groundplan._files import absent, nearest
 
 Kind = Literal["yaml", "image", "tiff", "bag", "zarr", "points"]
 
@@ -88,6 +88,6 @@ def open_file(path: Path) -> BinaryIO:
             raise MapError("map.unreadable", f"{path} is not a regular file")
         return path.open("rb")
     except FileNotFoundError as fault:
-        raise MapError("map.missing", absent(path)) from fault
+        raise MapError("map.missing", absent(path), nearest(path)) from fault
     except (OSError, ValueError) as fault:
         raise MapError("map.unreadable", f"cannot read {path}: {getattr(fault, 'strerror', None) or fault}") from fault

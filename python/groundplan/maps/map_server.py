@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import cast
 
 from groundplan._errors import MapError
+from groundplan._files import absent, nearest
 from groundplan.maps._dialects import FREE_THRESH, MODES, OCCUPIED_THRESH, Mode
 from groundplan.maps._map import MapWarning
 from groundplan.maps._open import open_file
@@ -167,7 +168,8 @@ def _image(path: Path, fields: dict[str, object]) -> tuple[Path, list[MapWarning
     beside = path.parent / name.replace("\\", "/").rsplit("/", 1)[-1]
     try:
         if image.is_dir():
-            raise MapError("map.directory", f"{path} names the image {name}, which is a directory")
+            said = f"{path} names the image {name}, which is a directory"
+            raise MapError("map.directory", said, "image: is followed by the name of a picture")
         if image.exists():
             return image, []
         if beside.is_file():
@@ -175,7 +177,7 @@ def _image(path: Path, fields: dict[str, object]) -> tuple[Path, list[MapWarning
             return beside, [MapWarning("image-beside", said)]
     except OSError:
         return image, []  # no permission, or a name too long: opening it says so
-    raise MapError("map.missing", f"{path} names the image {name}, and {image} does not exist")
+    raise MapError("map.missing", f"{path} names the image {name}, and {absent(image)}", nearest(image))
 
 
 def check_negate(path: Path, value: object) -> bool:
