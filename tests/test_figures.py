@@ -16,6 +16,7 @@ from PIL import Image
 
 import groundplan
 from groundplan import Map, Survey
+from groundplan._shapes import readable
 from groundplan.figures import _labels, _names, _panels, _style, draw_figures, draw_survey
 from groundplan.figures._underlay import underlay
 
@@ -151,10 +152,10 @@ def test_a_name_stands_in_the_widest_gap_between_crossings() -> None:
 
 
 def test_a_name_is_read_from_below_or_from_the_right_and_not_from_the_left() -> None:
-    assert [_names.readable(angle) for angle in (0.0, 12.0, 180.0, -168.0, 225.0)] == [0.0, 12.0, 0.0, 12.0, 45.0]
-    assert [_names.readable(angle) for angle in (90.0, -90.0, 89.9, 270.0)] == [90.0, 90.0, 89.9, 90.0]
-    assert _names.readable(-89.9) == pytest.approx(90.1)
-    assert _names.readable(-78.0) == -78.0
+    assert [readable(angle) for angle in (0.0, 12.0, 180.0, -168.0, 225.0)] == [0.0, 12.0, 0.0, 12.0, 45.0]
+    assert [readable(angle) for angle in (90.0, -90.0, 89.9, 270.0)] == [90.0, 90.0, 89.9, 90.0]
+    assert readable(-89.9) == pytest.approx(90.1)
+    assert readable(-78.0) == -78.0
 
 
 def test_centre_lines_that_cross_are_known() -> None:

@@ -1,4 +1,4 @@
-"""Geometries of labels."""
+"""Geometries of labels, and how their names lie along them."""
 
 from __future__ import annotations
 
@@ -17,3 +17,11 @@ def outline(label: dict[str, Any]) -> Any:
         parts = shapely.get_parts(shapely.make_valid(shape, method="structure", keep_collapsed=False))
         shape = max(parts, key=lambda part: part.area, default=None)
     return shape if shape is not None and shape.geom_type == "Polygon" and shape.area > 0 else None
+
+
+def readable(angle: float) -> float:
+    """Degrees at which a name along a line is read from below or from the right, as on a drawing.
+
+    Nearly upright lines lean either way from map to map: within 5 degrees all are read from the right.
+    """
+    return (angle + 85.0) % 180.0 - 85.0

@@ -14,6 +14,7 @@ from ezdxf.enums import MTextEntityAlignment, TextEntityAlignment
 from ezdxf.filemanagement import new
 from ezdxf.tools.standards import linetypes
 
+from groundplan._shapes import readable
 from groundplan.export._layers import Layer
 from groundplan.export._text import one_line
 
@@ -101,7 +102,7 @@ class Drawing:
         """A name, centred, never upside down."""
         if not one_line(text):
             return
-        turned = (math.degrees(angle) + 90 + 1e-6) % 180 - 90
+        turned = readable(math.degrees(angle))
         made = self.space.add_mtext(_mtext(text), dxfattribs=self.on(what) | {"char_height": height * self.scale})
         made.set_location(self.points([at])[0], round(turned, 6), MTextEntityAlignment.MIDDLE_CENTER)
 

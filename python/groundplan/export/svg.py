@@ -11,6 +11,7 @@ import shapely
 
 from groundplan._errors import ParameterError
 from groundplan._files import write_bytes
+from groundplan._shapes import readable
 from groundplan.export._places import Place, places
 from groundplan.export._svg import Drawing, DrawingNames
 from groundplan.figures import _style as ink
@@ -159,7 +160,7 @@ def _names(drawing: Drawing, survey: Survey, found: list[Place]) -> None:
             size = min(0.5 * place.width * names.dots, room * names.dots / 0.75, 7.0)
             if size >= 4.0:
                 angle = math.degrees(math.atan2(y1 - y0, x1 - x0))
-                names.write(place.centre, place.name, size, ink.INK, 7, (angle + 90.001) % 180 - 90.001)
+                names.write(place.centre, place.name, size, ink.INK, 7, readable(angle))
     name_regions([region for region in kinds["region"] if region.get("polygon")], kinds["corridor"], names)
 
 

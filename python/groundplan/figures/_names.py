@@ -117,11 +117,3 @@ def widest_gap(line: Points, crossings: Points, near: float) -> tuple[Points, fl
     wide = gaps >= 0.85 * gaps.max()
     best = np.flatnonzero(wide)[np.argmin(np.abs(middles[wide] - length / 2))]
     return start + middles[best] * unit, float(gaps[best])
-
-
-def readable(angle: float) -> float:
-    """Degrees at which a name along a line is read from below or from the right, as on a drawing.
-
-    Nearly upright lines lean either way from map to map: within 5 degrees all are read from the right.
-    """
-    return (angle + 85.0) % 180.0 - 85.0
