@@ -9,6 +9,8 @@ use super::pitch;
 use super::racks::Row;
 use super::turned::Turned;
 
+/// The shortest pitch that is looked for, and the longest, metres.
+const PITCHES: [f64; 2] = [1.0, 6.5];
 /// Posts stand this near to a row's faces, metres.
 const NEAR: f64 = 0.15;
 /// Places along are told apart in steps of this, metres; a post is about two and a half of them wide.
@@ -63,7 +65,7 @@ fn along(row: &Row, specks: &[[f64; 2]]) -> Vec<f64> {
 
 /// The pitch at which the rows have most power together; the longest of those that are about as good.
 fn common(rows: &[Vec<f64>]) -> Option<f64> {
-    let frequencies = period::frequencies(rows.iter().map(Vec::as_slice), pitch::LAGS.into())?;
+    let frequencies = period::frequencies(rows.iter().map(Vec::as_slice), PITCHES)?;
     let power = |f: f64| {
         let power = |places: &Vec<f64>| places.len() as f64 * period::measure(places, 1.0 / f).strength.powi(2);
         rows.iter().map(power).sum::<f64>()

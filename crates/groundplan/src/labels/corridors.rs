@@ -81,14 +81,14 @@ const FACED_LONG: f64 = 0.55;
 const FACED: f64 = 0.7;
 const FACED_TWICE: f64 = 0.4;
 const FACED_ONCE: f64 = 0.85;
-/// Posts that recur further apart than this are not those of bays, metres.
-pub const LONGEST_BAY: f64 = 4.5;
 /// A strip from so many to so many pitches wide may be a row of bays.
 const BAY_WIDTH: (f64, f64) = (0.65, 1.17);
 /// It is none when walls run along both its sides, with hardly a gap.
 const WALLED: f64 = 0.8;
 /// Nor when it is long, nearly all of it has structure on a side, and so much has it on the weaker one.
 const WEAKER: f64 = 0.45;
+/// And where no bays recur none when so much of its length has no more than posts on a side.
+const BARE: f64 = 0.7;
 /// Strips that overlap across by more than this share of the narrower one are rivals.
 const RIVAL: f64 = 0.25;
 
@@ -143,6 +143,8 @@ struct Family<'a> {
     view: &'a Turned,
     /// Between the lines of posts of the rows that cross, metres: a strip as wide may be a row of empty bays.
     pitches: Vec<f64>,
+    /// True when racks stand in the place: somewhere bays recur.
+    racked: bool,
     parameters: &'a Parameters,
     offsets: Vec<f64>,
     sides: Vec<Side>,
@@ -158,16 +160,18 @@ impl<'a> Family<'a> {
     fn new(evidence: &Evidence<'a>, views: &[Turned], view: &'a Turned) -> Self {
         let pitches = views.iter().filter(|other| other.direction != view.direction).filter_map(|other| {
             let sine = libm::sin(other.angle - view.angle).abs();
-            other.pitch.filter(|&pitch| pitch <= LONGEST_BAY).map(|pitch| pitch * sine)
+            other.pitch.map(|pitch| pitch * sine)
         });
+        let racked = views.iter().any(|view| view.pitch.is_some());
         // Where the bays are known, one post may be missing.
-        let bay = view.pitch.filter(|&pitch| pitch <= LONGEST_BAY).map_or(BAY, |pitch| BAY.max(MISSING * pitch));
+        let bay = view.pitch.map_or(BAY, |pitch| BAY.max(MISSING * pitch));
         Self {
             pitches: pitches.collect(),
+            racked,
             view,
             parameters: evidence.parameters,
             offsets: view.offsets.clone(),
-            sides: view.covered.iter().map(|covered| Side::new(covered, view.cell, bay)).collect(),
+            sides: (0..view.lines.len()).map(|n| Side::new(view, n, bay, racked)).collect(),
         }
     }
 
@@ -217,6 +221,7 @@ impl<'a> Family<'a> {
                 walled: holds(0, c) && holds(1, c),
                 near: sides.iter().any(|side| side.near[c]),
                 faces: sides.map(|side| side.faces[c]),
+                held: [0, 1].map(|n| beyond[n][c] > BEYOND),
             })
             .collect()
     }
@@ -286,6 +291,11 @@ impl<'a> Family<'a> {
         if bay && !aisle {
             return false;
         }
+        // Posts alone are a side where racks stand, and elsewhere pillars.
+        let bare = (0..2).map(|n| count(&|c| c.walled && !c.faces[n] && !c.held[n])).fold(0.0, f64::max);
+        if !self.racked && bare > BARE * columns.len() as f64 {
+            return false;
+        }
         let structured = if length >= LONG * width {
             faced(1) >= FACED_LONG * near
         } else {
@@ -309,10 +319,10 @@ struct Side {
 }
 
 impl Side {
-    fn new(covered: &[bool], cell: f64, bay: f64) -> Self {
-        let cells = |metres: f64| (metres / cell) as usize;
-        let joined = |gap: f64, shortest: f64| {
-            let mut flags = covered.to_vec();
+    fn new(view: &Turned, line: usize, bay: f64, racked: bool) -> Self {
+        let cells = |metres: f64| (metres / view.cell) as usize;
+        let joined = |from: &[Vec<bool>], gap: f64, shortest: f64| {
+            let mut flags = from[line].clone();
             close(&mut flags, cells(gap));
             for (from, to) in runs(&flags, true) {
                 if to - from < cells(shortest) {
@@ -321,7 +331,13 @@ impl Side {
             }
             flags
         };
-        Self { walls: joined(bay, SHORTEST_SIDE), near: joined(BAY / 2.0, 0.0), faces: joined(FACE_GAP, FACE) }
+        // Where bays recur, their posts are the side of the way along them.
+        let posts = if racked { &view.touched } else { &view.covered };
+        Self {
+            walls: joined(posts, bay, SHORTEST_SIDE),
+            near: joined(posts, BAY / 2.0, 0.0),
+            faces: joined(&view.covered, FACE_GAP, FACE),
+        }
     }
 }
 
@@ -341,6 +357,8 @@ struct Column {
     near: bool,
     /// On which sides structure of some length lies.
     faces: [bool; 2],
+    /// On which sides the ground beyond is not free.
+    held: [bool; 2],
 }
 
 impl Column {

@@ -1,37 +1,108 @@
-//! Gates: ways through a single row of racks, too short to be known by walls of their own.
-//!
-//! A gap in a row is a gate when nothing stands in it, on neither face of the row, and when it is wider than a bay; or,
-//! where no pitch is known, when the row is closed at both its ends.
+//! Ways through rows of racks: gates, which are too short to be known by walls of their own, and which of the strips that
+//! lead across rows do so through their bays.
 
-use super::corridors::{LONGEST_BAY, Strip};
-use super::racks::Row;
+use super::Evidence;
+use super::corridors::Strip;
+use super::look::Look;
+use super::racks::{self, Row};
+use super::sections::{self, Section};
 use super::turned::Turned;
 
-/// A gate is so wide, metres.
-const WIDTH: (f64, f64) = (1.6, 8.0);
-/// A gap up to this many pitches is an empty bay.
-const BAY: f64 = 1.12;
-/// A gap this near to a whole number of pitches is one of empty bays, unless its ends are closed.
-const WHOLE: f64 = 0.1;
-/// A column in which more than this share of the row is blocked is not of a gap.
-const FREE: f64 = 0.12;
-/// Structure this near to a face stands on it, metres.
-const FACE: f64 = 0.3;
-/// An end is closed when, so near to the gap, metres, so much of the row is blocked in one column.
-const FRAME: (f64, f64) = (0.4, 0.5);
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
 const IN_LINE: (f64, f64) = (0.7, 0.5);
+/// What goes on so far beyond the rows, metres, is a way there.
+const BEYOND: f64 = 2.0;
 
 /// The ways through the rows between corridors, as strips of the direction that crosses them.
-pub fn find(views: &[Turned], strips: &[Strip], rows: &[Row]) -> Vec<Strip> {
+pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], rows: &[Row]) -> Vec<Strip> {
     let mut gates = Vec::new();
     for row in rows {
         let (Some(between), Some(other)) = (row.between, crossing(views, row.direction)) else { continue };
         let view = &views[row.direction];
         let middles = between.map(|n| strips[n].middle());
-        gates.extend(gaps(view, row).into_iter().map(|gap| strip(view, other, row, gap, middles)));
+        let ways =
+            sections::find(look, &evidence.grid.frame, view, other, row).into_iter().filter(|section| section.way);
+        gates.extend(ways.map(|section| strip(view, other, row, section, middles)));
     }
     in_line(gates)
+}
+
+/// The strips without what of them leads through bays.
+pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
+    let mut crossed: Vec<Vec<Crossed>> = vec![Vec::new(); strips.len()];
+    for view in views.iter().filter(|view| view.pitch.is_some()) {
+        let Some(other) = crossing(views, view.direction) else { continue };
+        // The rows as they were if nothing led across them.
+        let is_aisle = |n: &usize| strips[*n].direction == view.direction && !racks::is_within_row(&strips, *n);
+        let aisles: Vec<Strip> = (0..strips.len()).filter(is_aisle).map(|n| strips[n].clone()).collect();
+        let extents: Vec<[f64; 2]> = aisles.iter().map(|strip| strip.along).collect();
+        for row in racks::between(views, &aisles, &extents) {
+            let Some(between) = row.between else { continue };
+            let sections = sections::find(look, &evidence.grid.frame, view, other, &row);
+            for (strip, crossed) in strips.iter().zip(&mut crossed).filter(|(s, _)| s.direction == other.direction) {
+                crossed.extend(cross(view, other, &row, &sections, strip, between.map(|n| &aisles[n])));
+            }
+        }
+    }
+    strips.into_iter().zip(crossed).flat_map(|(strip, crossed)| ways(strip, crossed)).collect()
+}
+
+/// A row that a strip leads across: in the strip's own places, and whether there is a way.
+#[derive(Clone, Copy, Debug)]
+struct Crossed {
+    /// From the middle of the one corridor along the row to that of the other.
+    along: [f64; 2],
+    /// From that corridor's far side to the other's.
+    outer: [f64; 2],
+    way: bool,
+}
+
+/// What a strip finds where it crosses a row; nothing where it ends before, or passes the row's ends.
+fn cross(
+    view: &Turned,
+    other: &Turned,
+    row: &Row,
+    sections: &[Section],
+    strip: &Strip,
+    between: [&Strip; 2],
+) -> Option<Crossed> {
+    let (sin, cos) = (libm::sin(other.angle - view.angle), libm::cos(other.angle - view.angle));
+    let middle = f64::midpoint(row.across[0], row.across[1]);
+    // The strip's middle where the row's is, and places of the row's direction along the strip.
+    let s = (middle - strip.middle() * cos) / sin;
+    let u = s * cos - strip.middle() * sin;
+    let along = |v: f64| s + (v - middle) / sin;
+    let sorted = |ends: [f64; 2]| [ends[0].min(ends[1]), ends[0].max(ends[1])];
+    let own = sorted(row.across.map(along));
+    let reach = strip.width() / 2.0 / sin.abs();
+    if own[0] < strip.along[0] - racks::SAME
+        || own[1] > strip.along[1] + racks::SAME
+        || u - reach <= row.along[0] + view.cell
+        || u + reach >= row.along[1] - view.cell
+    {
+        return None;
+    }
+    let way = sections.iter().any(|section| section.way && section.along[0] < u && u < section.along[1]);
+    let along_of = |places: [f64; 2]| sorted(places.map(along));
+    Some(Crossed {
+        along: along_of(between.map(Strip::middle)),
+        outer: along_of([between[0].across[0], between[1].across[1]]),
+        way,
+    })
+}
+
+/// A strip's pieces between the rows that it has no way through.
+fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
+    crossed.sort_by(|a, b| a.along[0].total_cmp(&b.along[0]));
+    let piece = |along: [f64; 2]| Strip { along, ..strip.clone() };
+    let (Some(first), Some(last)) = (crossed.iter().position(|c| c.way), crossed.iter().rposition(|c| c.way)) else {
+        let (Some(first), Some(last)) = (crossed.first(), crossed.last()) else { return vec![strip] };
+        let ends = [[strip.along[0], first.outer[0]], [last.outer[1], strip.along[1]]];
+        return ends.into_iter().filter(|[from, to]| to - from >= BEYOND).map(piece).collect();
+    };
+    let from = if first == 0 { strip.along[0] } else { crossed[first].along[0] };
+    let to = if last + 1 == crossed.len() { strip.along[1] } else { crossed[last].along[1] };
+    vec![piece([from, to])]
 }
 
 /// The direction that is most nearly square to another.
@@ -40,58 +111,19 @@ fn crossing(views: &[Turned], direction: usize) -> Option<&Turned> {
     views.iter().max_by(|a, b| sine(a).total_cmp(&sine(b))).filter(|view| sine(view) > 0.5)
 }
 
-/// Gaps of a row that are gates: from, to, along.
-fn gaps(view: &Turned, row: &Row) -> Vec<[f64; 2]> {
-    let depth = row.across[1] - row.across[0];
-    let margin = 0.1 * depth;
-    let first = view.column(row.along[0]);
-    let range = first..view.column(row.along[1]) + 1;
-    let blocked: Vec<f64> =
-        range.clone().map(|c| view.blocked(c, row.across[0] + margin, row.across[1] - margin)).collect();
-    let faces: Vec<&Vec<bool>> = view
-        .offsets
-        .iter()
-        .zip(&view.covered)
-        .filter(|(offset, _)| row.across.iter().any(|face| (face - **offset).abs() <= FACE))
-        .map(|(_, covered)| covered)
-        .collect();
-    let free: Vec<bool> =
-        range.zip(&blocked).map(|(c, b)| *b <= FREE && faces.iter().all(|covered| !covered[c])).collect();
-    let frame = (FRAME.0 / view.cell).ceil() as usize;
-    let closed = |columns: &[f64]| columns.iter().any(|b| *b >= FRAME.1);
-    let pitch = view.pitch.filter(|&pitch| pitch <= LONGEST_BAY);
-    let is_gate = |&(from, to): &(usize, usize)| {
-        // A row's own ends are no gaps in it.
-        if from == 0 || to == free.len() {
-            return false;
-        }
-        let width = (to - from) as f64 * view.cell;
-        let framed =
-            closed(&blocked[from.saturating_sub(frame)..from]) && closed(&blocked[to..(to + frame).min(free.len())]);
-        let bays = pitch.is_some_and(|pitch| {
-            let count = (width / pitch).round();
-            width <= BAY * pitch || (count >= 2.0 && (width / pitch - count).abs() < WHOLE && !framed)
-        });
-        (WIDTH.0..=WIDTH.1).contains(&width) && !bays && (pitch.is_some() || framed)
-    };
-    let place = |c: usize| view.along(first + c);
-    super::corridors::runs(&free, true).iter().filter(|run| is_gate(run)).map(|&(a, b)| [place(a), place(b)]).collect()
-}
-
-/// A gap as a strip of the crossing direction, from the middle of one corridor to that of the other.
-fn strip(view: &Turned, other: &Turned, row: &Row, gap: [f64; 2], middles: [f64; 2]) -> Strip {
-    let (sin, cos) = (libm::sin(other.angle - view.angle), libm::cos(other.angle - view.angle));
+/// A way as a strip of the crossing direction, from the middle of one corridor to that of the other.
+fn strip(view: &Turned, other: &Turned, row: &Row, section: Section, middles: [f64; 2]) -> Strip {
+    let sin = libm::sin(other.angle - view.angle);
+    let [from, to] = section.along;
     let v = f64::midpoint(row.across[0], row.across[1]);
-    let [s, t] = other.place(view.to_map([f64::midpoint(gap[0], gap[1]), v]));
-    // Where the families are not square, a column is free over less than the gate.
-    let depth = row.across[1] - row.across[0];
-    let width = (gap[1] - gap[0]) * sin.abs() + depth * cos.abs();
+    let [s, t] = other.place(view.to_map([f64::midpoint(from, to), v]));
+    let width = (to - from) * sin.abs();
     let ends = middles.map(|middle| s + (middle - v) / sin);
     Strip {
         direction: other.direction,
         along: [ends[0].min(ends[1]), ends[0].max(ends[1])],
         across: [t - width / 2.0, t + width / 2.0],
-        score: depth,
+        score: row.across[1] - row.across[0],
     }
 }
 

@@ -18,6 +18,7 @@ mod places;
 mod racks;
 mod ragged;
 mod rooms;
+mod sections;
 mod strips;
 mod sums;
 mod turned;

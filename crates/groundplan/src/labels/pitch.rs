@@ -6,56 +6,67 @@ use super::turned::Turned;
 
 /// Lags are counted in steps of this many metres, between the shortest and the longest that are looked at.
 const STEP: f64 = 0.05;
-pub const LAGS: (f64, f64) = (1.0, 6.5);
+const LAGS: (f64, f64) = (1.6, 6.0);
 /// Gradients of this magnitude or less are specks: posts, and the corners of goods.
 const SPECK: u8 = 100;
 /// Specks this near to a line stand on it, metres.
 const NEAR: f64 = 0.12;
 /// Lines with fewer specks say nothing.
 const FEWEST: usize = 8;
+/// What lies beside a line from so far to so far off it, metres, is floor where this share or less of it is not free,
+/// and a row where that share or more is not: posts that recur across the rows have both on both sides.
+const BESIDE: (f64, f64) = (0.15, 0.55);
+const FACE: (f64, f64) = (0.1, 0.5);
+/// Steps to either side of a lag that are of one post, and such that show what is chance.
+const POST: usize = 2;
+const BASE: usize = 12;
 /// A pattern stands out of the other lags by this factor.
-const CONTRAST: f64 = 2.2;
+const CONTRAST: f64 = 8.0;
 /// Of several lags the shortest that is this much of the strongest is the pitch: the others are its multiples.
-const FUNDAMENTAL: f64 = 0.5;
+const FUNDAMENTAL: f64 = 0.7;
+/// Steps to either side of a lag over which it is the strongest.
+const TOP: usize = 4;
 
 /// Distance from post to post along the lines of the view's direction, metres, where there is a pattern: the first
 /// strong peak of the specks' autocorrelation, summed over the lines.
 pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     let last = (LAGS.1 / STEP) as usize;
     let first = (LAGS.0 / STEP) as usize;
-    let mut sums = vec![0.0; last + 3];
-    for places in specks(evidence, view) {
+    let mut sums = vec![0.0; 2 * (last + BASE) + 1];
+    for (offset, places) in specks(evidence, view) {
         if places.len() < FEWEST {
             continue;
         }
-        let count = places.len() as f64;
-        let span = f64::from(places[places.len() - 1] - places[0] + 1);
+        let beside = [-1.0, 1.0].map(|side| taken(view, offset, side));
         for (n, &place) in places.iter().enumerate() {
             for other in &places[n + 1..] {
-                match sums.get_mut((other - place) as usize) {
-                    Some(sum) => *sum += 1.0,
-                    None => break,
+                let lag = (other - place) as usize;
+                if lag >= sums.len() {
+                    break;
+                }
+                if lag >= first - BASE && is_face(view, &beside, place, *other) {
+                    sums[lag] += 1.0;
                 }
             }
         }
-        for (lag, sum) in sums.iter_mut().enumerate() {
-            *sum -= count * count / span * (1.0 - lag as f64 / span).max(0.0);
-        }
     }
-    // A post is two or three steps wide.
-    let smooth: Vec<f64> = (0..sums.len())
-        .map(|n| (-2isize..=2).map(|d| sums.get(n.saturating_add_signed(d)).copied().unwrap_or(0.0)).sum())
-        .collect();
-    let range = first..=last;
-    let strongest = smooth[range.clone()].iter().copied().fold(0.0, f64::max);
-    let mut levels: Vec<f64> = smooth[range.clone()].iter().map(|s| s.abs()).collect();
-    levels.sort_by(f64::total_cmp);
-    if strongest <= CONTRAST * levels[levels.len() / 2] {
-        return None;
-    }
-    let top =
-        |lag: usize| (1..=4).all(|d| smooth[lag] >= smooth[lag - d] && smooth[lag] >= smooth[(lag + d).min(last)]);
-    range.into_iter().find(|&lag| top(lag) && smooth[lag] >= FUNDAMENTAL * strongest).map(|lag| lag as f64 * STEP)
+    // What lies around a lag is chance. How many pairs are more than that, and in its deviations.
+    let excess = |times: usize, lag: usize| {
+        let total = |reach: usize| {
+            let around = times * lag - times * reach..times * (lag + reach) + 1;
+            (sums[around.clone()].iter().sum::<f64>(), around.len() as f64)
+        };
+        let ((near, few), (all, many)) = (total(POST), total(BASE));
+        let chance = (all - near) / (many - few) * few;
+        (near - chance, (near - chance) / libm::sqrt(chance + 1.0))
+    };
+    // What recurs does so twice as far off too.
+    let found: Vec<(f64, f64)> =
+        (first..=last).map(|lag| (excess(1, lag).0, excess(1, lag).1.min(excess(2, lag).1))).collect();
+    let top = |n: usize| found[n.saturating_sub(TOP)..].iter().take(2 * TOP + 1).all(|other| other.1 <= found[n].1);
+    let tops: Vec<usize> = (0..found.len()).filter(|&n| found[n].1 >= CONTRAST && top(n)).collect();
+    let most = tops.iter().map(|&n| found[n].0).fold(0.0, f64::max);
+    tops.into_iter().find(|&n| found[n].0 >= FUNDAMENTAL * most).map(|n| (first + n) as f64 * STEP)
 }
 
 /// Places of all specks along and across the view's direction, metres.
@@ -67,7 +78,7 @@ pub fn specks_of<'a>(evidence: &'a Evidence, view: &'a Turned) -> impl Iterator<
 }
 
 /// For each line of the direction, the steps along it at which specks stand, ascending.
-fn specks(evidence: &Evidence, view: &Turned) -> Vec<Vec<i32>> {
+fn specks(evidence: &Evidence, view: &Turned) -> Vec<(f64, Vec<i32>)> {
     let lines = evidence.lines;
     let mut offsets: Vec<f64> = (0..lines.len())
         .filter(|&n| lines.directions[n] as usize == view.direction)
@@ -85,5 +96,25 @@ fn specks(evidence: &Evidence, view: &Turned) -> Vec<Vec<i32>> {
         line.sort_unstable();
         line.dedup();
     }
-    places
+    offsets.into_iter().zip(places).collect()
+}
+
+/// What is not free on one side of a line: the columns' shares, summed up from the first.
+fn taken(view: &Turned, offset: f64, side: f64) -> Vec<f64> {
+    let ends = [offset + side * BESIDE.0, offset + side * BESIDE.1];
+    let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+    let mut sum = 0.0;
+    let sums = (0..view.size[0]).map(|c| {
+        sum += view.blocked(c, low, high);
+        sum
+    });
+    std::iter::once(0.0).chain(sums).collect()
+}
+
+/// True when a row lies on one side of the line between two steps, and free floor on the other.
+fn is_face(view: &Turned, beside: &[Vec<f64>; 2], from: i32, to: i32) -> bool {
+    let column = |step: i32| view.column(view.start[0] + f64::from(step) * STEP);
+    let (from, to) = (column(from), column(to) + 1);
+    let [one, two] = [0, 1].map(|n| (beside[n][to] - beside[n][from]) / (to - from) as f64);
+    one.min(two) <= FACE.0 && one.max(two) >= FACE.1
 }

@@ -29,40 +29,22 @@ const TAKEN: f64 = 0.12;
 /// The same where no corridor runs along its other side.
 const TAKEN_OUTSIDE: f64 = 0.5;
 const SEEN_OUTSIDE: f64 = 0.5;
+/// The corridors along a rack are so many times as long as a gap in it.
+const LONGER: f64 = 1.5;
 /// Sides nearer than this are the same, metres.
 pub const SAME: f64 = 0.3;
 
 /// The rows between the corridors and at the outer sides of them, the longest first.
 pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
-    let mut rows = Vec::new();
+    let mut rows = between(views, strips, extents);
+    rows.retain(|row| taken(&views[row.direction], row) >= TAKEN);
     for (n, strip) in strips.iter().enumerate() {
         let view = &views[strip.direction];
-        let row = |across: [f64; 2], pieces: Vec<(f64, f64)>, between: Option<[usize; 2]>| {
-            let mut pieces = pieces;
-            for (k, crossing) in strips.iter().enumerate().filter(|(_, s)| s.direction != strip.direction) {
-                let [from, to] = crossed(view, &views[crossing.direction], crossing, extents[k], across);
-                pieces = without(pieces, from, to);
-            }
-            let row = move |(from, to)| Row { direction: strip.direction, along: [from, to], across, between };
-            pieces.into_iter().map(row).filter(|row| row.along[1] - row.along[0] >= SHORTEST)
-        };
         for side in [0, 1] {
             // What of the side no nearer corridor has taken yet.
             let mut open = vec![(extents[n][0], extents[n][1])];
-            for m in neighbours(strips, n, side) {
-                let (low, high) = if side == 1 { (n, m) } else { (m, n) };
-                let across = [strips[low].across[1], strips[high].across[0]];
-                let depth = across[1] - across[0];
-                if depth > DEPTH.1 {
-                    break;
-                }
-                let [from, to] = extents[m];
-                let shared = open.iter().map(|(a, b)| (a.max(from), b.min(to))).filter(|(a, b)| a < b).collect();
-                open = without(open, from, to);
-                // Each pair of corridors once.
-                if side == 1 && depth >= DEPTH.0 {
-                    rows.extend(row(across, shared, Some([low, high])).filter(|row| taken(view, row) >= TAKEN));
-                }
+            for (m, _) in behind(strips, n, side) {
+                open = without(open, extents[m][0], extents[m][1]);
             }
             let own = strip.across[side];
             // Where no corridor runs along its other side, a row's other face must have been seen.
@@ -72,10 +54,12 @@ pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[
                 .filter(|(depth, _)| (DEPTH.0..=DEPTH.1).contains(depth))
                 .collect();
             faces.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (depth, n) in faces {
+            for (depth, line) in faces {
                 let across = if side == 1 { [own, own + depth] } else { [own - depth, own] };
-                let is_row = |row: &Row| taken(view, row) >= TAKEN_OUTSIDE && seen(view, n, row) >= SEEN_OUTSIDE;
-                let found: Vec<Row> = row(across, open.clone(), None).filter(is_row).collect();
+                let row = |along| Row { direction: strip.direction, along, across, between: None };
+                let is_row = |row: &Row| taken(view, row) >= TAKEN_OUTSIDE && seen(view, line, row) >= SEEN_OUTSIDE;
+                let pieces = uncrossed(views, strips, extents, n, across, open.clone());
+                let found: Vec<Row> = pieces.into_iter().map(row).filter(is_row).collect();
                 for row in &found {
                     open = without(open, row.along[0], row.along[1]);
                 }
@@ -84,6 +68,74 @@ pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[
         }
     }
     apart(views, rows)
+}
+
+/// What lies between neighbouring corridors, and may be a row, be it taken or not.
+pub fn between(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (n, strip) in strips.iter().enumerate() {
+        let mut open = vec![(extents[n][0], extents[n][1])];
+        for (m, depth) in behind(strips, n, 1) {
+            let [from, to] = extents[m];
+            let shared = open.iter().map(|(a, b)| (a.max(from), b.min(to))).filter(|(a, b)| a < b).collect();
+            open = without(open, from, to);
+            if depth >= DEPTH.0 {
+                let across = [strip.across[1], strips[m].across[0]];
+                let pieces = uncrossed(views, strips, extents, n, across, shared).into_iter();
+                rows.extend(pieces.map(|along| Row {
+                    direction: strip.direction,
+                    along,
+                    across,
+                    between: Some([n, m]),
+                }));
+            }
+        }
+    }
+    rows
+}
+
+/// The corridors of its direction on one side of a corridor, no further off than a row is deep, the nearest first; each
+/// with how far.
+fn behind(strips: &[Strip], n: usize, side: usize) -> Vec<(usize, f64)> {
+    let own = &strips[n];
+    let gap = |m: usize| {
+        let other = &strips[m];
+        if side == 1 { other.across[0] - own.across[1] } else { own.across[0] - other.across[1] }
+    };
+    let others = (0..strips.len()).filter(|&m| m != n && strips[m].direction == own.direction);
+    let mut found: Vec<(usize, f64)> =
+        others.map(|m| (m, gap(m))).filter(|(_, gap)| *gap > -SAME && *gap <= DEPTH.1).collect();
+    found.sort_by(|a, b| a.1.total_cmp(&b.1));
+    found
+}
+
+/// Pieces of a row beside a corridor that no other corridor crosses, each long enough.
+fn uncrossed(
+    views: &[Turned],
+    strips: &[Strip],
+    extents: &[[f64; 2]],
+    n: usize,
+    across: [f64; 2],
+    mut pieces: Vec<(f64, f64)>,
+) -> Vec<[f64; 2]> {
+    let direction = strips[n].direction;
+    for (crossing, extent) in strips.iter().zip(extents).filter(|(s, _)| s.direction != direction) {
+        let [from, to] = crossed(&views[direction], &views[crossing.direction], crossing, *extent, across);
+        pieces = without(pieces, from, to);
+    }
+    pieces.into_iter().filter(|(from, to)| to - from >= SHORTEST).map(|(from, to)| [from, to]).collect()
+}
+
+/// True when a strip lies between two much longer corridors that are no further apart than the faces of a rack.
+pub fn is_within_row(strips: &[Strip], n: usize) -> bool {
+    let own = &strips[n];
+    let beside = |other: &&Strip| {
+        let shared = other.along[1].min(own.along[1]) - other.along[0].max(own.along[0]);
+        other.direction == own.direction && shared > own.length() / 2.0 && other.length() > LONGER * own.length()
+    };
+    let below = strips.iter().filter(beside).map(|s| s.across[1]).filter(|v| *v <= own.across[0] + SAME);
+    let above = strips.iter().filter(beside).map(|s| s.across[0]).filter(|v| *v >= own.across[1] - SAME);
+    above.fold(f64::INFINITY, f64::min) - below.fold(f64::NEG_INFINITY, f64::max) <= DEPTH.1
 }
 
 /// The longest of rows that overlap.
@@ -112,19 +164,6 @@ fn seen(view: &Turned, line: usize, row: &Row) -> f64 {
     let columns = view.column(row.along[0])..view.column(row.along[1]) + 1;
     let count = columns.len() as f64;
     columns.filter(|&c| view.covered[line][c]).count() as f64 / count
-}
-
-/// Corridors of the same direction on one side of a corridor, the nearest first.
-fn neighbours(strips: &[Strip], n: usize, side: usize) -> Vec<usize> {
-    let own = &strips[n];
-    let gap = |m: usize| {
-        let other = &strips[m];
-        if side == 1 { other.across[0] - own.across[1] } else { own.across[0] - other.across[1] }
-    };
-    let mut found: Vec<usize> =
-        (0..strips.len()).filter(|&m| m != n && strips[m].direction == own.direction && gap(m) > -SAME).collect();
-    found.sort_by(|&a, &b| gap(a).total_cmp(&gap(b)));
-    found
 }
 
 /// Pieces without what lies between two places.

@@ -17,8 +17,6 @@ use crate::grid::{State, tidy};
 
 /// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
 const ALONE: (f64, f64) = (2.0, 5.0);
-/// The corridors along a rack are so many times as long as a gap in it.
-const LONGER: f64 = 1.5;
 /// And one that is shut at both its ends, be it with a door, so many times: less is a room.
 const SHUT: f64 = 4.5;
 /// A corridor that meets one other goes on beyond it for so many times its width, or it is a niche at its side.
@@ -36,8 +34,9 @@ pub fn find(evidence: &Evidence, ground: &Ground) -> Vec<Label> {
         // Each view shares its own work out among what threads are left.
         let own = Evidence { threads: evidence.threads / count.max(1), ..*evidence };
         let views = map_each(count, evidence.threads, |d| Turned::new(&own, &ground.look, d));
-        let mut plan = Plan::new(evidence, &views, corridors::find(evidence, &views));
-        let gates = gates::find(&views, &plan.strips, &plan.rows);
+        let found = gates::without_bays(evidence, &ground.look, &views, corridors::find(evidence, &views));
+        let mut plan = Plan::new(evidence, &views, found);
+        let gates = gates::find(evidence, &ground.look, &views, &plan.strips, &plan.rows);
         if !gates.is_empty() {
             plan.strips.extend(gates);
             plan = Plan::new(evidence, &views, plan.strips);
@@ -221,7 +220,7 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
             let reach = met.clone().map(|m| m.reach[usize::from(m.corridors[0] != n)]).sum::<f64>();
             let beyond = strips[n].length() - reach;
             match met.count() {
-                0 | 1 if within_row(&strips, n) => false,
+                0 | 1 if racks::is_within_row(&strips, n) => false,
                 0 if junctions::is_shut(views, &strips[n], 0) && junctions::is_shut(views, &strips[n], 1) => {
                     strips[n].length() >= SHUT * strips[n].width()
                 }
@@ -237,18 +236,6 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
         let mut flags = stays.into_iter();
         strips.retain(|_| flags.next().unwrap_or(false));
     }
-}
-
-/// True when a strip lies between two much longer corridors that are no further apart than the faces of a rack.
-fn within_row(strips: &[Strip], n: usize) -> bool {
-    let own = &strips[n];
-    let beside = |other: &&Strip| {
-        let shared = other.along[1].min(own.along[1]) - other.along[0].max(own.along[0]);
-        other.direction == own.direction && shared > own.length() / 2.0 && other.length() > LONGER * own.length()
-    };
-    let below = strips.iter().filter(beside).map(|s| s.across[1]).filter(|v| *v <= own.across[0] + racks::SAME);
-    let above = strips.iter().filter(beside).map(|s| s.across[0]).filter(|v| *v >= own.across[1] - racks::SAME);
-    above.fold(f64::INFINITY, f64::min) - below.fold(f64::NEG_INFINITY, f64::max) <= racks::DEPTH.1
 }
 
 /// Where each corridor begins and ends, along: its walled part, and on to the middle of the junctions at its ends.

@@ -44,6 +44,8 @@ pub struct Turned {
     pub offsets: Vec<f64>,
     /// For each of those lines, whether structure lies on it in each column.
     pub covered: Vec<Vec<bool>>,
+    /// The same for what only touches it: posts, and the ends of what lies across.
+    pub touched: Vec<Vec<bool>>,
 }
 
 impl Turned {
@@ -74,6 +76,7 @@ impl Turned {
             lines: Vec::new(),
             offsets: Vec::new(),
             covered: Vec::new(),
+            touched: Vec::new(),
         };
         made.cells = made.look_at(evidence, look);
         made.cover_lines(evidence);
@@ -114,14 +117,13 @@ impl Turned {
         self.lines.sort_by(|&a, &b| lines.offsets[a].total_cmp(&lines.offsets[b]));
         self.offsets = self.lines.iter().map(|&n| lines.offsets[n]).collect();
         self.covered = vec![vec![false; self.size[0]]; self.lines.len()];
+        self.touched = self.covered.clone();
         let near = NEAR.0.max(NEAR.1 * frame.resolution);
         let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
         let on_grid = frame.angle_to_grid(self.angle);
         let gradients = evidence.gradients;
         for ((pixel, &along), &magnitude) in gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes) {
-            if weight(f64::from(along), magnitude, on_grid, tolerance) == 0 {
-                continue;
-            }
+            let lies = weight(f64::from(along), magnitude, on_grid, tolerance) > 0;
             let [u, v] = self.place(frame.to_metres(pixel.map(|p| f64::from(p) + 0.5)));
             let column = self.column(u);
             let first = self.lines.partition_point(|&n| lines.offsets[n] < v - near);
@@ -129,7 +131,8 @@ impl Turned {
                 if lines.offsets[n] > v + near {
                     break;
                 }
-                self.covered[place][column] = true;
+                self.touched[place][column] = true;
+                self.covered[place][column] |= lies;
             }
         }
     }

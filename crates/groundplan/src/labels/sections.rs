@@ -1,0 +1,149 @@
+//! A row from upright to upright: its bays, and the ways through it.
+//!
+//! A bay is as wide as the posts recur, and a row of empty ones is free from one end to the other. A way has another
+//! width, or the row is closed on both its sides.
+
+use super::look::{BLOCKED, Look};
+use super::racks::Row;
+use super::turned::Turned;
+use crate::grid::Frame;
+
+/// What lies between two uprights of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// From where to where, along the row's middle.
+    pub along: [f64; 2],
+    /// True when it leads through the row, false when it is bays.
+    pub way: bool,
+}
+
+/// A way is so wide, metres.
+const WIDTH: (f64, f64) = (1.6, 8.0);
+/// A section up to this many pitches is an empty bay.
+const BAY: f64 = 1.08;
+/// A section this near to a whole number of pitches is one of empty bays, unless its ends are closed.
+const WHOLE: f64 = 0.1;
+/// A column of which this share is not free is of what closes a row.
+const TAKEN: f64 = 0.5;
+/// A way is free but for this share, metre for metre: one walks round what was left in it.
+const CLUTTER: f64 = 0.2;
+/// A way between posts, and not between frames, is free but for this share of its columns.
+const FREE: f64 = 0.12;
+/// Structure this near to a face stands on it, metres.
+const FACE: f64 = 0.25;
+/// An end is closed by what stands along a straight line so near to it, metres, over so much of the row's depth: goods
+/// beside one another do not line up so well.
+const FRAME: (f64, f64) = (0.35, 0.9);
+/// What stands so near to a line lies on it, metres; what stands so near to the row's faces is not asked.
+const ON_LINE: f64 = 0.06;
+const ON_FACE: f64 = 0.1;
+/// Places along such a line are so far apart, metres.
+const STEP: f64 = 0.05;
+
+/// The sections of a row, in order; `other` is the direction that its uprights stand along.
+pub fn find(look: &Look, frame: &Frame, view: &Turned, other: &Turned, row: &Row) -> Vec<Section> {
+    let columns = Columns::new(look, frame, view, other, row);
+    let open: Vec<bool> = (0..columns.blocked.len()).map(|n| !columns.stops(n)).collect();
+    let runs = super::corridors::runs(&open, true).into_iter();
+    // A row's own ends are no uprights that a section could lie between.
+    runs.filter(|&(from, to)| from > 0 && to < open.len())
+        .map(|(from, to)| Section { along: [from, to].map(|n| columns.place(n)), way: columns.is_way(from, to) })
+        .collect()
+}
+
+/// A row's columns, leaning as the other direction does.
+struct Columns<'a> {
+    look: &'a Look<'a>,
+    frame: &'a Frame,
+    view: &'a Turned,
+    row: &'a Row,
+    /// Across, half way between the row's faces.
+    middle: f64,
+    /// Metres along for a metre across.
+    lean: f64,
+    /// For each column, share of it that is not free.
+    blocked: Vec<f64>,
+    /// For each column, on which of the two faces something stands.
+    faces: Vec<[bool; 2]>,
+}
+
+impl<'a> Columns<'a> {
+    fn new(look: &'a Look<'a>, frame: &'a Frame, view: &'a Turned, other: &Turned, row: &'a Row) -> Self {
+        let turn = other.angle - view.angle;
+        let lean = libm::cos(turn) / libm::sin(turn);
+        let middle = f64::midpoint(row.across[0], row.across[1]);
+        let count = ((row.along[1] - row.along[0]) / view.cell) as usize;
+        let mut made = Self { look, frame, view, row, middle, lean, blocked: Vec::new(), faces: Vec::new() };
+        let slices = (((row.across[1] - row.across[0]) / view.cell).round() as usize).max(1);
+        let height = (row.across[1] - row.across[0]) / slices as f64;
+        for n in 0..count {
+            let along = made.place(n) + view.cell / 2.0;
+            let column = |v: f64| view.column(along + (v - middle) * lean);
+            let share = |k: usize| {
+                let low = row.across[0] + k as f64 * height;
+                view.blocked(column(low + height / 2.0), low, low + height)
+            };
+            made.blocked.push((0..slices).map(share).sum::<f64>() / slices as f64);
+            made.faces.push(row.across.map(|v| view.occupied(column(v), v - FACE, v + FACE) > 0.0));
+        }
+        made
+    }
+
+    /// Where a column begins, along the row's middle.
+    fn place(&self, column: usize) -> f64 {
+        self.row.along[0] + column as f64 * self.view.cell
+    }
+
+    /// True when a column is of an upright or of goods: something stands on both faces, or in most of it.
+    fn stops(&self, n: usize) -> bool {
+        let near = n.saturating_sub(1)..(n + 2).min(self.faces.len());
+        let stands = |face: usize| self.faces[near.clone()].iter().any(|faces| faces[face]);
+        self.blocked[n] >= TAKEN || (self.faces[n].contains(&true) && stands(0) && stands(1))
+    }
+
+    fn is_way(&self, from: usize, to: usize) -> bool {
+        let width = self.place(to) - self.place(from);
+        let share = self.blocked[from..to].iter().sum::<f64>() / (to - from) as f64;
+        if !(WIDTH.0..=WIDTH.1).contains(&width) || share > CLUTTER {
+            return false;
+        }
+        if [from, to].iter().all(|&n| self.closed(self.place(n)) >= FRAME.1) {
+            return true;
+        }
+        let stands = |n: &usize| self.blocked[*n] > FREE || self.faces[*n].contains(&true);
+        let free = (from + 1..to.saturating_sub(1)).filter(stands).count() == 0;
+        free && self.view.pitch.is_some_and(|pitch| {
+            let count = (width / pitch).round();
+            width > BAY * pitch && (count < 2.0 || (width / pitch - count).abs() >= WHOLE)
+        })
+    }
+
+    /// Over how much of the row's depth something stands along the straight line near a place where most does.
+    fn closed(&self, along: f64) -> f64 {
+        let step = self.frame.resolution;
+        let near = (ON_LINE / step).round().max(1.0) as usize;
+        let reach = (FRAME.0 / step).ceil() as usize + near;
+        let low = (self.row.across[0] + ON_FACE).min(self.middle);
+        let (count, down) = self.steps(low);
+        let lines: Vec<Vec<bool>> = (0..=2 * reach)
+            .map(|n| {
+                let u = along + (n as f64 - reach as f64) * step + (low - self.middle) * self.lean;
+                let mut samples = vec![0; count];
+                self.look.along(self.frame.to_pixels(self.view.to_map([u, low])), down, &mut samples);
+                samples.into_iter().map(|sample| sample > BLOCKED).collect()
+            })
+            .collect();
+        let stands = |lines: &[Vec<bool>]| (0..count).filter(|&k| lines.iter().any(|line| line[k])).count();
+        let most = lines.windows(2 * near + 1).map(stands).max();
+        most.unwrap_or(0) as f64 / count as f64
+    }
+
+    /// How many steps there are across the row from a place on, and one of them on the grid, pixels.
+    fn steps(&self, low: f64) -> (usize, [f64; 2]) {
+        let depth = 2.0 * (self.middle - low);
+        let count = (depth / STEP).round().max(1.0);
+        let at = |v: f64| self.frame.to_pixels(self.view.to_map([v * self.lean, v]));
+        let (from, to) = (at(low), at(low + depth));
+        (count as usize, [0, 1].map(|axis| (to[axis] - from[axis]) / count))
+    }
+}
