@@ -68,7 +68,7 @@ def test_a_lane_runs_between_the_posts_and_not_between_goods_that_stand_back_fro
         nodes = np.array([node.at for node in roads.nodes])
         edges = {(lane.start, lane.end) for lane in roads.lanes if lane.kind == "aisle"}
         off.append(road_scores(nodes, edges, made.truth, made.map)["lane_error_m"])
-    assert off[0] > 0.15 and off[1] < 0.1
+    assert max(off) < 0.1
 
 
 def test_the_scores_see_what_is_wrong_with_a_road_map(tmp_path: Path) -> None:

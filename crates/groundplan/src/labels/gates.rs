@@ -5,11 +5,13 @@ use super::Evidence;
 use super::corridors::Strip;
 use super::look::Look;
 use super::racks::{self, Row};
-use super::sections::{self, Section};
+use super::sections::Columns;
 use super::turned::Turned;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
 const IN_LINE: (f64, f64) = (0.7, 0.5);
+/// What shares so much of a row's depth leads into it.
+const ENTERS: f64 = 0.35;
 /// What goes on so far beyond the rows, metres, is a way there.
 const BEYOND: f64 = 2.0;
 
@@ -20,9 +22,8 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
         let (Some(between), Some(other)) = (row.between, crossing(views, row.direction)) else { continue };
         let view = &views[row.direction];
         let middles = between.map(|n| strips[n].middle());
-        let ways =
-            sections::find(look, &evidence.grid.frame, view, other, row).into_iter().filter(|section| section.way);
-        gates.extend(ways.map(|section| strip(view, other, row, section, middles)));
+        let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, view.pitch);
+        gates.extend(columns.ways().into_iter().map(|way| strip(view, other, row, way, middles)));
     }
     in_line(gates)
 }
@@ -30,7 +31,9 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
 /// The strips without what of them leads through bays.
 pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let mut crossed: Vec<Vec<Crossed>> = vec![Vec::new(); strips.len()];
-    for view in views.iter().filter(|view| view.pitch.is_some()) {
+    // Where a direction does not tell its own bays, they are as those of the others.
+    let common = views.iter().find_map(|view| view.pitch);
+    for view in views.iter().filter(|_| common.is_some()) {
         let Some(other) = crossing(views, view.direction) else { continue };
         // The rows as they were if nothing led across them.
         let is_aisle = |n: &usize| strips[*n].direction == view.direction && !racks::is_within_row(&strips, *n);
@@ -38,9 +41,16 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: 
         let extents: Vec<[f64; 2]> = aisles.iter().map(|strip| strip.along).collect();
         for row in racks::between(views, &aisles, &extents) {
             let Some(between) = row.between else { continue };
-            let sections = sections::find(look, &evidence.grid.frame, view, other, &row);
-            for (strip, crossed) in strips.iter().zip(&mut crossed).filter(|(s, _)| s.direction == other.direction) {
-                crossed.extend(cross(view, other, &row, &sections, strip, between.map(|n| &aisles[n])));
+            let columns = Columns::new(look, &evidence.grid.frame, [view, other], &row, view.pitch.or(common));
+            let ways = columns.ways();
+            let aisles = between.map(|n| &aisles[n]);
+            // Then the rows might as well be what lies between two ways across the rows.
+            let longest = aisles.iter().map(|aisle| aisle.length()).fold(f64::INFINITY, f64::min);
+            let judged = |strip: &Strip| view.pitch.is_some() || strip.length() < longest;
+            for (strip, crossed) in strips.iter().zip(&mut crossed) {
+                if strip.direction == other.direction && judged(strip) {
+                    crossed.extend(cross([view, other], &row, (&columns, &ways), strip, aisles));
+                }
             }
         }
     }
@@ -54,15 +64,17 @@ struct Crossed {
     along: [f64; 2],
     /// From that corridor's far side to the other's.
     outer: [f64; 2],
+    /// There is a way of its own.
     way: bool,
+    /// There may be one, if the strip is one elsewhere.
+    open: bool,
 }
 
 /// What a strip finds where it crosses a row; nothing where it ends before, or passes the row's ends.
 fn cross(
-    view: &Turned,
-    other: &Turned,
+    [view, other]: [&Turned; 2],
     row: &Row,
-    sections: &[Section],
+    (columns, ways): (&Columns, &[[f64; 2]]),
     strip: &Strip,
     between: [&Strip; 2],
 ) -> Option<Crossed> {
@@ -75,19 +87,20 @@ fn cross(
     let sorted = |ends: [f64; 2]| [ends[0].min(ends[1]), ends[0].max(ends[1])];
     let own = sorted(row.across.map(along));
     let reach = strip.width() / 2.0 / sin.abs();
-    if own[0] < strip.along[0] - racks::SAME
-        || own[1] > strip.along[1] + racks::SAME
+    let shared = own[1].min(strip.along[1]) - own[0].max(strip.along[0]);
+    if shared < ENTERS * (own[1] - own[0])
         || u - reach <= row.along[0] + view.cell
         || u + reach >= row.along[1] - view.cell
     {
         return None;
     }
-    let way = sections.iter().any(|section| section.way && section.along[0] < u && u < section.along[1]);
+    let way = ways.iter().any(|way| way[0] < u && u < way[1]);
     let along_of = |places: [f64; 2]| sorted(places.map(along));
     Some(Crossed {
         along: along_of(between.map(Strip::middle)),
         outer: along_of([between[0].across[0], between[1].across[1]]),
         way,
+        open: way || columns.lets_through([u - reach, u + reach]),
     })
 }
 
@@ -95,7 +108,10 @@ fn cross(
 fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
     crossed.sort_by(|a, b| a.along[0].total_cmp(&b.along[0]));
     let piece = |along: [f64; 2]| Strip { along, ..strip.clone() };
-    let (Some(first), Some(last)) = (crossed.iter().position(|c| c.way), crossed.iter().rposition(|c| c.way)) else {
+    let is_way = crossed.iter().any(|c| c.way);
+    let (Some(first), Some(last)) =
+        (crossed.iter().position(|c| is_way && c.open), crossed.iter().rposition(|c| is_way && c.open))
+    else {
         let (Some(first), Some(last)) = (crossed.first(), crossed.last()) else { return vec![strip] };
         let ends = [[strip.along[0], first.outer[0]], [last.outer[1], strip.along[1]]];
         return ends.into_iter().filter(|[from, to]| to - from >= BEYOND).map(piece).collect();
@@ -112,9 +128,8 @@ fn crossing(views: &[Turned], direction: usize) -> Option<&Turned> {
 }
 
 /// A way as a strip of the crossing direction, from the middle of one corridor to that of the other.
-fn strip(view: &Turned, other: &Turned, row: &Row, section: Section, middles: [f64; 2]) -> Strip {
+fn strip(view: &Turned, other: &Turned, row: &Row, [from, to]: [f64; 2], middles: [f64; 2]) -> Strip {
     let sin = libm::sin(other.angle - view.angle);
-    let [from, to] = section.along;
     let v = f64::midpoint(row.across[0], row.across[1]);
     let [s, t] = other.place(view.to_map([f64::midpoint(from, to), v]));
     let width = (to - from) * sin.abs();

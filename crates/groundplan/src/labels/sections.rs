@@ -3,19 +3,11 @@
 //! A bay is as wide as the posts recur, and a row of empty ones is free from one end to the other. A way has another
 //! width, or the row is closed on both its sides.
 
+use super::corridors::runs;
 use super::look::{BLOCKED, Look};
 use super::racks::Row;
 use super::turned::Turned;
 use crate::grid::Frame;
-
-/// What lies between two uprights of a row.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Section {
-    /// From where to where, along the row's middle.
-    pub along: [f64; 2],
-    /// True when it leads through the row, false when it is bays.
-    pub way: bool,
-}
 
 /// A way is so wide, metres.
 const WIDTH: (f64, f64) = (1.6, 8.0);
@@ -23,6 +15,8 @@ const WIDTH: (f64, f64) = (1.6, 8.0);
 const BAY: f64 = 1.08;
 /// A section this near to a whole number of pitches is one of empty bays, unless its ends are closed.
 const WHOLE: f64 = 0.1;
+/// What stands so near to a way's side stands at it, metres.
+const SIDE: f64 = 0.35;
 /// A column of which this share is not free is of what closes a row.
 const TAKEN: f64 = 0.5;
 /// A way is free but for this share, metre for metre: one walks round what was left in it.
@@ -40,19 +34,8 @@ const ON_FACE: f64 = 0.1;
 /// Places along such a line are so far apart, metres.
 const STEP: f64 = 0.05;
 
-/// The sections of a row, in order; `other` is the direction that its uprights stand along.
-pub fn find(look: &Look, frame: &Frame, view: &Turned, other: &Turned, row: &Row) -> Vec<Section> {
-    let columns = Columns::new(look, frame, view, other, row);
-    let open: Vec<bool> = (0..columns.blocked.len()).map(|n| !columns.stops(n)).collect();
-    let runs = super::corridors::runs(&open, true).into_iter();
-    // A row's own ends are no uprights that a section could lie between.
-    runs.filter(|&(from, to)| from > 0 && to < open.len())
-        .map(|(from, to)| Section { along: [from, to].map(|n| columns.place(n)), way: columns.is_way(from, to) })
-        .collect()
-}
-
-/// A row's columns, leaning as the other direction does.
-struct Columns<'a> {
+/// A row's columns, leaning as the direction does that its uprights stand along.
+pub struct Columns<'a> {
     look: &'a Look<'a>,
     frame: &'a Frame,
     view: &'a Turned,
@@ -61,6 +44,8 @@ struct Columns<'a> {
     middle: f64,
     /// Metres along for a metre across.
     lean: f64,
+    /// From post to post, metres, where that is known.
+    pitch: Option<f64>,
     /// For each column, share of it that is not free.
     blocked: Vec<f64>,
     /// For each column, on which of the two faces something stands.
@@ -68,12 +53,19 @@ struct Columns<'a> {
 }
 
 impl<'a> Columns<'a> {
-    fn new(look: &'a Look<'a>, frame: &'a Frame, view: &'a Turned, other: &Turned, row: &'a Row) -> Self {
+    /// The columns of a row; its uprights stand along the `other` direction.
+    pub fn new(
+        look: &'a Look<'a>,
+        frame: &'a Frame,
+        [view, other]: [&'a Turned; 2],
+        row: &'a Row,
+        pitch: Option<f64>,
+    ) -> Self {
         let turn = other.angle - view.angle;
         let lean = libm::cos(turn) / libm::sin(turn);
         let middle = f64::midpoint(row.across[0], row.across[1]);
         let count = ((row.along[1] - row.along[0]) / view.cell) as usize;
-        let mut made = Self { look, frame, view, row, middle, lean, blocked: Vec::new(), faces: Vec::new() };
+        let mut made = Self { look, frame, view, row, middle, lean, pitch, blocked: Vec::new(), faces: Vec::new() };
         let slices = (((row.across[1] - row.across[0]) / view.cell).round() as usize).max(1);
         let height = (row.across[1] - row.across[0]) / slices as f64;
         for n in 0..count {
@@ -87,6 +79,34 @@ impl<'a> Columns<'a> {
             made.faces.push(row.across.map(|v| view.occupied(column(v), v - FACE, v + FACE) > 0.0));
         }
         made
+    }
+
+    /// The ways through the row, from where to where along its middle, in order.
+    pub fn ways(&self) -> Vec<[f64; 2]> {
+        let open: Vec<bool> = (0..self.blocked.len()).map(|n| !self.stops(n)).collect();
+        let sections = runs(&open, true).into_iter();
+        // A row's own ends are no uprights that a way could lie between.
+        let between = sections.filter(|&(from, to)| from > 0 && to < open.len());
+        between
+            .filter(|&(from, to)| self.is_way(from, to))
+            .map(|(from, to)| [self.place(from), self.place(to)])
+            .collect()
+    }
+
+    /// True when what is known to be a way elsewhere goes on through the row: it is wider than a bay, and nothing stands
+    /// between its sides that one could not walk round.
+    pub fn lets_through(&self, [from, to]: [f64; 2]) -> bool {
+        let column = |u: f64| (((u - self.row.along[0]) / self.view.cell).max(0.0) as usize).min(self.blocked.len());
+        let (first, last) = (column(from + SIDE), column(to - SIDE));
+        first < last
+            && self.pitch.is_some_and(|pitch| to - from > BAY * pitch)
+            && self.share(first, last) <= CLUTTER
+            && !(first..last).any(|n| self.stops(n))
+    }
+
+    /// Share of the columns that is not free.
+    fn share(&self, from: usize, to: usize) -> f64 {
+        self.blocked[from..to].iter().sum::<f64>() / (to - from) as f64
     }
 
     /// Where a column begins, along the row's middle.
@@ -103,8 +123,7 @@ impl<'a> Columns<'a> {
 
     fn is_way(&self, from: usize, to: usize) -> bool {
         let width = self.place(to) - self.place(from);
-        let share = self.blocked[from..to].iter().sum::<f64>() / (to - from) as f64;
-        if !(WIDTH.0..=WIDTH.1).contains(&width) || share > CLUTTER {
+        if !(WIDTH.0..=WIDTH.1).contains(&width) || self.share(from, to) > CLUTTER {
             return false;
         }
         if [from, to].iter().all(|&n| self.closed(self.place(n)) >= FRAME.1) {
@@ -112,7 +131,7 @@ impl<'a> Columns<'a> {
         }
         let stands = |n: &usize| self.blocked[*n] > FREE || self.faces[*n].contains(&true);
         let free = (from + 1..to.saturating_sub(1)).filter(stands).count() == 0;
-        free && self.view.pitch.is_some_and(|pitch| {
+        free && self.pitch.is_some_and(|pitch| {
             let count = (width / pitch).round();
             width > BAY * pitch && (count < 2.0 || (width / pitch - count).abs() >= WHOLE)
         })
