@@ -396,7 +396,23 @@ def cores(asked: Any = None) -> int:
 
 
 def find_gradients(map: Map, *, threads: int | None = None, **parameters: Any) -> Gradients:
-    """II-A: oriented gradients of the edge pixels."""
+    """II-A: oriented gradients of the edge pixels.
+
+    Parameters
+    ----------
+    map
+        The occupancy grid.
+    threads
+        At most so many; all cores by default. Any number gives the same gradients.
+    **parameters
+        By the table's names, with an underscore for the dot, here and in all stages. Those of other stages are
+        checked and change nothing.
+
+    Raises
+    ------
+    ParameterError
+        A parameter that is not known or out of its range, threads included; ``stage.input`` for a map that is none.
+    """
     grid = layout(needs(Map, "map", map))
     return made(Gradients, run(_core.find_gradients, grid, named(parameters), cores(threads)))
 
@@ -405,6 +421,18 @@ def find_directions(map: Map, gradients: Gradients | None = None, **parameters: 
     """II-A: the dominant directions.
 
     Their number and angles are found unless ``directions_count`` or ``directions_angles_deg`` are given.
+
+    Parameters
+    ----------
+    map
+        The occupancy grid.
+    gradients
+        Its oriented gradients; found anew where none are given, here and in all stages.
+
+    Raises
+    ------
+    ParameterError
+        A parameter that is not known or out of its range; ``stage.input`` for what is no map, or gradients of another.
     """
     grid, edges = layout(needs(Map, "map", map)), _gradients(map, gradients, parameters)
     return made(Directions, run(_core.find_directions, grid, edges, named(parameters)))
@@ -413,7 +441,25 @@ def find_directions(map: Map, gradients: Gradients | None = None, **parameters: 
 def find_radiograms(
     map: Map, directions: Directions, gradients: Gradients | None = None, **parameters: Any
 ) -> list[Radiogram]:
-    """II-B: the radiogram of each direction."""
+    """II-B: the radiogram of each direction.
+
+    Parameters
+    ----------
+    map, gradients
+        As `find_directions` takes them.
+    directions
+        Those found, or `Directions.of` angles in radians.
+
+    Returns
+    -------
+    list of Radiogram
+        One for each direction, in their order: metres of structure over offsets in metres.
+
+    Raises
+    ------
+    ParameterError
+        A parameter that is not known or out of its range; ``stage.input`` for directions that do not fit.
+    """
     grid, along = layout(needs(Map, "map", map)), taken(Directions, "directions", directions)
     edges = _gradients(map, gradients, parameters)
     found = run(_core.find_radiograms, grid, edges, along, named(parameters))
@@ -421,13 +467,40 @@ def find_radiograms(
 
 
 def find_response(radiogram: Radiogram, **parameters: Any) -> Response:
-    """II-B: the wavelet response that a radiogram's peaks are read from."""
+    """II-B: the wavelet response that a radiogram's peaks are read from (Du, Kibbe and Lin 2006).
+
+    Parameters
+    ----------
+    radiogram
+        Of one direction.
+
+    Raises
+    ------
+    ParameterError
+        A parameter that is not known or out of its range; ``stage.input`` for what is no radiogram.
+    """
     given = taken(Radiogram, "radiogram", radiogram)
     return made(Response, run(_core.find_response, given, named(parameters)))
 
 
 def find_lines(radiograms: list[Radiogram], **parameters: Any) -> Lines:
-    """II-B: the radiograms' peaks as lines."""
+    """II-B: the radiograms' peaks as lines.
+
+    Parameters
+    ----------
+    radiograms
+        One for each direction, in their order: a line's direction is the position of its radiogram here.
+
+    Returns
+    -------
+    Lines
+        Offsets, amplitudes and widths in metres.
+
+    Raises
+    ------
+    ParameterError
+        A parameter that is not known or out of its range; ``stage.input`` for what are no radiograms.
+    """
     if not isinstance(radiograms, list | tuple):
         raise ParameterError("stage.input", f"radiograms has to be a list and is {a(type(radiograms).__name__)}")
     given = [taken(Radiogram, f"radiograms[{k}]", radiogram) for k, radiogram in enumerate(radiograms)]
@@ -435,7 +508,25 @@ def find_lines(radiograms: list[Radiogram], **parameters: Any) -> Lines:
 
 
 def subdivide(map: Map, directions: Directions, lines: Lines) -> Subdivision:
-    """II-C: vertices, edges and faces of all lines taken across the map."""
+    """II-C: vertices, edges and faces of all lines taken across the map.
+
+    Parameters
+    ----------
+    map
+        The occupancy grid, of which the frame alone counts.
+    directions, lines
+        Those found, or `Directions.of` angles in radians and `Lines.of` offsets in metres.
+
+    Returns
+    -------
+    Subdivision
+        In metres, in the map frame. Without lines it is one face, the map.
+
+    Raises
+    ------
+    ParameterError
+        ``stage.input`` for lines that are of no such direction, or values that are not finite.
+    """
     grid = layout(needs(Map, "map", map))
     given = taken(Directions, "directions", directions), taken(Lines, "lines", lines)
     return made(Subdivision, run(_core.subdivide, grid, *given))
@@ -450,7 +541,22 @@ def find_occupancy(
     threads: int | None = None,
     **parameters: Any,
 ) -> Occupancy:
-    """II-D: O(face) and O(edge) of the subdivision that the lines make."""
+    """II-D: O(face) and O(edge) of the subdivision that the lines make, shares from 0 to 1.
+
+    Parameters
+    ----------
+    map, directions, lines
+        As `subdivide` takes them; the faces and edges are those that it makes of them.
+    gradients
+        As `find_directions` takes them.
+    threads
+        At most so many; all cores by default. Any number gives the same occupancy.
+
+    Raises
+    ------
+    ParameterError
+        A parameter that is not known or out of its range; ``stage.input`` for lines that do not fit.
+    """
     grid = layout(needs(Map, "map", map))
     given = taken(Directions, "directions", directions), taken(Lines, "lines", lines)
     edges = _gradients(map, gradients, parameters, threads)
@@ -458,13 +564,40 @@ def find_occupancy(
 
 
 def find_walls(subdivision: Subdivision, occupancy: Occupancy, **parameters: Any) -> Walls:
-    """II-D: C(edge) = disparity > t1 or O(edge) > t2, and the walls."""
+    """II-D: C(edge) = disparity > t1 or O(edge) > t2, and the walls: the abstraction of Fig. 6.
+
+    Parameters
+    ----------
+    subdivision, occupancy
+        Of the same lines.
+
+    Returns
+    -------
+    Walls
+        ``walls_disparity`` is t1, ``walls_occupancy`` is t2; points in metres, in the map frame.
+
+    Raises
+    ------
+    ParameterError
+        A parameter that is not known or out of its range; ``stage.input`` for an occupancy of another subdivision.
+    """
     given = taken(Subdivision, "subdivision", subdivision), taken(Occupancy, "occupancy", occupancy)
     return made(Walls, run(_core.find_walls, *given, named(parameters)))
 
 
 def find_adjacency(subdivision: Subdivision, walls: Walls) -> Adjacency:
-    """II-D, II-E: a node for each face, a link for each edge between two faces."""
+    """II-D, II-E: a node for each face, a link for each edge between two faces.
+
+    Parameters
+    ----------
+    subdivision, walls
+        Of the same lines. A link is connected where its edge is not cogent.
+
+    Raises
+    ------
+    ParameterError
+        ``stage.input`` for walls of another subdivision.
+    """
     given = taken(Subdivision, "subdivision", subdivision), taken(Walls, "walls", walls)
     return made(Adjacency, run(_core.find_adjacency, *given))
 
@@ -480,7 +613,28 @@ def find_labels(
     threads: int | None = None,
     **parameters: Any,
 ) -> list[dict[str, Any]]:
-    """II-E: what is what, as the survey's JSON has it: corridors, junctions, racks, regions, doors, pillars."""
+    """II-E: what is what, as the survey's JSON has it: corridors, junctions, racks, regions, doors, pillars.
+
+    Parameters
+    ----------
+    map, directions, lines, gradients
+        As `find_occupancy` takes them.
+    occupancy, walls
+        Of the subdivision that those lines make.
+    threads
+        At most so many; all cores by default. Any number gives the same labels.
+
+    Returns
+    -------
+    list of dict
+        ``kind``, and the keys that docs/survey.md gives that kind: metres, square metres, radians, ids of faces, and
+        ids of labels, which are positions in this list.
+
+    Raises
+    ------
+    ParameterError
+        A parameter that is not known or out of its range; ``stage.input`` for stages that do not fit one another.
+    """
     grid = layout(needs(Map, "map", map))
     cut = taken(Directions, "directions", directions), taken(Lines, "lines", lines)
     measured = taken(Occupancy, "occupancy", occupancy), taken(Walls, "walls", walls)

@@ -88,7 +88,7 @@ class Survey(Stage):
     directions, radiograms, lines, subdivision, occupancy, walls, adjacency
         As `groundplan.stages` describes them.
     labels : list of dict
-        Corridors, junctions: ``kind`` and its keys; an id is a position in this list.
+        ``kind`` and the keys that docs/survey.md gives that kind; an id is a position in this list.
     patterns : list of dict
         What recurs among the labels, ``bays`` and ``pillars``: ``labels``, ``angle``, ``pitch`` and ``phase``.
     warnings : list of MapWarning
@@ -506,7 +506,7 @@ def survey(
     ----------
     map
         A `Map`, or an array: uint8 as a picture of a map (0 occupied, 205 unknown, 254 free, top row first), int8 as
-        the data of a nav_msgs/OccupancyGrid (-1, 0..100, lowest row first).
+        the data of a nav_msgs/OccupancyGrid (-1, 0..100, lowest row first), bool as occupied or not (top row first).
     resolution, origin
         Of an array: metres per pixel, and the pose of its lower left corner (m, m, rad).
     directions, lines

@@ -74,7 +74,7 @@ def read(
     occupied_thresh, free_thresh : float, optional
         Darkness from which a pixel is occupied and up to which it is free, 0 to 1. Where neither the YAML nor the
         caller states them and map_saver's 0.65 and 0.196 miss the picture, they are taken from its histogram. Of
-        occupancies: hundredths of a percent; 0.65 and 0.25 when not given.
+        occupancies: of 100, so that 0.65 is an occupancy of 65; 0.65 and 0.25 when not given.
     topic : str, optional
         Of a bag: the topic with the map, where there are several.
     stamp : float, optional
@@ -163,7 +163,7 @@ def from_array(
     image : str
         Name to give the map in its survey.
     dialect, unknown, negate, mode, occupied_thresh, free_thresh
-        As in `read`, for uint8. For int8 the thresholds alone count, as hundredths of a percent; 0.65 and 0.25
+        As in `read`, for uint8. For int8 the thresholds alone count, 0.65 for an occupancy of 65; 0.65 and 0.25
         when not given.
 
     Raises
