@@ -24,7 +24,8 @@ def picture() -> None:
     place = draw_survey(groundplan.survey(map), map, DOCS / "survey.png")
     with Image.open(place) as drawn:
         drawn.thumbnail((1200, 1200))
-        drawn.convert("RGB").quantize(128).save(place, optimize=True)
+        # The median cut gives small discs the colours of the large areas beside them.
+        drawn.convert("RGB").quantize(256, Image.Quantize.FASTOCTREE).save(place, optimize=True)
 
 
 def formats() -> None:

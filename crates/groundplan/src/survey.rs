@@ -139,7 +139,7 @@ fn undecided(labels: &[Label], confidence: &[f64]) -> Option<Warning> {
     (count > 0).then(|| Warning {
         code: "unsure-labels",
         message: format!(
-            "the evidence does not decide {count} of {all} labels: their confidence is {UNSURE} or less, {least} at least"
+            "the evidence does not decide {count} of {all} labels: their confidence is {UNSURE} or less, down to {least}"
         ),
     })
 }
