@@ -144,7 +144,8 @@ impl Looks<'_> {
             for [x, y] in along(side) {
                 all += 1;
                 // Counter-clockwise: outside is on the right.
-                let near = (1..=4).map(|n| f64::from(n) * 0.05);
+                let pixel = self.grid.frame.resolution;
+                let near = (0..(0.2 / pixel).round().max(1.0) as usize).map(|n| (n as f64 + 0.5) * pixel);
                 bounded +=
                     usize::from(near.into_iter().any(|d| self.state([x - d * nx, y - d * ny]) == State::Occupied));
             }
