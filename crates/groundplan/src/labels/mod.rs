@@ -8,6 +8,7 @@ mod gates;
 mod junctions;
 mod look;
 mod names;
+mod near;
 mod outline;
 mod paper;
 mod patterns;

@@ -6,6 +6,7 @@
 //! pattern when fewer than one in a hundred such would be expected of all that were tried (Desolneux, Moisan and Morel 2000).
 
 use super::Evidence;
+use super::near::Near;
 use super::outline;
 use super::period::{self, Period};
 use super::rooms::Raster;
@@ -195,6 +196,7 @@ pub fn angles(directions: &[f64]) -> Vec<f64> {
 fn blobs(evidence: &Evidence, raster: &Raster, grounds: &[Vec<[f64; 2]>]) -> Vec<Blob> {
     let (least, most) = (evidence.parameters.pillars_min_width, evidence.parameters.pillars_max_width);
     let frame = &evidence.grid.frame;
+    let near = Near::polygons(grounds);
     let mut blobs = Vec::new();
     for island in &raster.islands.small {
         let width = (island.length * island.thickness).sqrt() * raster.resolution;
@@ -215,7 +217,7 @@ fn blobs(evidence: &Evidence, raster: &Raster, grounds: &[Vec<[f64; 2]>]) -> Vec
                 })
             }
         });
-        if occupied && !grounds.iter().any(|ground| outline::holds(ground, at)) {
+        if occupied && !near.at(at).iter().any(|&ground| outline::holds(&grounds[ground as usize], at)) {
             blobs.push(Blob { at, width });
         }
     }

@@ -79,15 +79,15 @@ fn suffix(n: usize) -> String {
 /// Free share of each column.
 fn free_columns(view: &Turned) -> Vec<f64> {
     let top = view.start[1] + view.size[1] as f64 * view.cell;
-    (0..view.size[0]).map(|column| 1.0 - view.blocked(column, view.start[1], top)).collect()
+    view.all_blocked(view.start[1], top).into_iter().map(|blocked| 1.0 - blocked).collect()
 }
 
 /// How much of each row is free.
 fn free_rows(view: &Turned) -> Vec<f64> {
     let row = |n: usize| {
         let low = view.start[1] + n as f64 * view.cell;
-        let columns = (0..view.size[0]).step_by(STRIDE);
-        columns.map(|column| 1.0 - view.blocked(column, low, low + view.cell)).sum::<f64>()
+        let columns = view.all_blocked(low, low + view.cell).into_iter().step_by(STRIDE);
+        columns.map(|blocked| 1.0 - blocked).sum::<f64>()
     };
     (0..view.size[1]).map(row).collect()
 }

@@ -192,5 +192,5 @@ fn crossed(view: &Turned, other: &Turned, crossing: &Strip, extent: [f64; 2], ac
 fn taken(view: &Turned, row: &Row) -> f64 {
     let columns = view.column(row.along[0])..view.column(row.along[1]).max(view.column(row.along[0]) + 1);
     let count = columns.len() as f64;
-    columns.map(|c| view.blocked(c, row.across[0], row.across[1])).sum::<f64>() / count
+    view.some_blocked(columns, row.across[0], row.across[1]).into_iter().sum::<f64>() / count
 }

@@ -106,15 +106,16 @@ impl<'a> Candidate<'a> {
         let blocked = view.blocked_in(across[0], across[1]);
         let beyond = beyond(across).map(|[low, high]| {
             let side = view.blocked_in(low, high);
-            (side, side.least(|share| share >= HELD))
+            let held = side.least(|share| share >= HELD);
+            (side, held)
         });
         Self {
             view,
             across,
-            blocked,
             closed: blocked.least(|share| share > IMPASSABLE),
             cluttered: blocked.least(|share| share > CLUTTERED),
             unclear: blocked.least(|share| share > CLEAR),
+            blocked,
             beyond,
         }
     }
@@ -187,7 +188,8 @@ impl<'a> Candidate<'a> {
             columns.iter().filter(|column| is(column)).count() as f64 / columns.len() as f64
         };
         let seen = |[low, high]: [f64; 2]| {
-            range.clone().filter(|&c| view.occupied(c, low, high) > 0.0).count() as f64 / columns.len() as f64
+            let seen = view.some_occupied(range.clone(), low, high).into_iter().filter(|share| *share > 0.0);
+            seen.count() as f64 / columns.len() as f64
         };
         share(&|column| column.clear) >= LEAST_CLEAR
             && [0, 1].iter().all(|&side| share(&|column| column.held[side]) >= LEAST_HELD)

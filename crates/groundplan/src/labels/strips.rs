@@ -5,6 +5,7 @@ use super::corridors::{self, Strip};
 use super::gates;
 use super::junctions::{self, Meeting};
 use super::names::{Named, names};
+use super::near::Near;
 use super::period::Period;
 use super::pillars;
 use super::places::Squares;
@@ -278,21 +279,27 @@ fn rectangle(view: &Turned, along: [f64; 2], across: [f64; 2]) -> Vec<[f64; 2]> 
 /// Faces that no label of a kind has yet.
 struct Faces<'a> {
     centres: &'a [[f64; 2]],
-    left: Vec<u32>,
+    near: Near,
+    left: Vec<bool>,
 }
 
 impl<'a> Faces<'a> {
     fn new(evidence: &Evidence<'a>, of: impl Fn(State) -> bool) -> Self {
-        let states = evidence.occupancy.states.iter().enumerate();
-        let left = states.filter(|(_, state)| of(**state)).map(|(face, _)| face as u32).collect();
-        Self { centres: &evidence.subdivision.centres, left }
+        let centres = &evidence.subdivision.centres;
+        let left: Vec<bool> = evidence.occupancy.states.iter().map(|state| of(*state)).collect();
+        let points: Vec<_> =
+            (0u32..).zip(centres).filter(|(face, _)| left[*face as usize]).map(|(face, at)| (face, *at)).collect();
+        Self { centres, near: Near::points(&points), left }
     }
 
     /// Takes the faces whose centres lie in a convex polygon.
     fn take(&mut self, polygon: &[[f64; 2]]) -> Vec<u32> {
-        let (inside, outside) =
-            self.left.iter().partition(|&&face| outline::holds(polygon, self.centres[face as usize]));
-        self.left = outside;
+        let mut inside = self.near.within(polygon);
+        inside.retain(|&face| self.left[face as usize] && outline::holds(polygon, self.centres[face as usize]));
+        inside.sort_unstable();
+        for &face in &inside {
+            self.left[face as usize] = false;
+        }
         inside
     }
 }

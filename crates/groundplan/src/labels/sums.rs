@@ -4,6 +4,7 @@
 //! alike as one number: most of a large map is.
 
 use crate::bands::map_bands;
+use std::cell::Cell;
 
 /// What is asked of a cell.
 #[derive(Clone, Copy)]
@@ -25,7 +26,7 @@ const ONES: u64 = 0x0101_0101_0101_0101;
 const LOW: u64 = 0x0f0f_0f0f_0f0f_0f0f;
 /// Of a square that is all alike: its cells' byte, and the bit that says so.
 const ALIKE: u32 = 1 << 31;
-/// The greatest sums that are added up in 16 bits: rows of at most nine samples.
+/// So many rows at most are added up at once, in 16 bits: a cell has nine samples.
 const ROWS: usize = 4096;
 
 /// The cells of a view.
@@ -82,60 +83,69 @@ impl Cells {
                 let row = |n: usize| &sums[what as usize][n * width..][..*width];
                 Rows::Summed { below: row(from), above: row(to) }
             }
-            Self::Squared { width, bands } => Rows::Squared { width: *width, bands, what, rows: [from, to] },
+            Self::Squared { width, bands } => {
+                let last = Cell::new((usize::MAX, [0; SIDE]));
+                Rows::Squared { width: *width, bands, what, rows: [from, to], last }
+            }
         }
     }
 }
 
 /// Some rows of cells.
-#[derive(Clone, Copy)]
 pub enum Rows<'a> {
-    Summed { below: &'a [u32], above: &'a [u32] },
-    Squared { width: usize, bands: &'a [Band], what: What, rows: [usize; 2] },
+    Summed {
+        below: &'a [u32],
+        above: &'a [u32],
+    },
+    Squared {
+        width: usize,
+        bands: &'a [Band],
+        what: What,
+        rows: [usize; 2],
+        /// The columns that were asked last, eight at once, and their sums: mostly the next to be asked is beside.
+        last: Cell<(usize, [u32; SIDE])>,
+    },
 }
 
 impl Rows<'_> {
     /// The sum over them of one column.
-    pub fn at(self, column: usize) -> u32 {
+    pub fn at(&self, column: usize) -> u32 {
         match self {
             Self::Summed { below, above } => above[column] - below[column],
-            Self::Squared { width, bands, what, rows } => {
-                let byte = |sums: u64| sums >> (column % SIDE * 8) as u32 & 255;
-                squares(bands, width, column / SIDE, what, rows).map(|sums| byte(sums) as u32).sum()
+            Self::Squared { width, bands, what, rows, last } => {
+                let n = column / SIDE;
+                if last.get().0 != n {
+                    last.set((n, add_up(bands, *width, n, *what, *rows)));
+                }
+                last.get().1[column % SIDE]
             }
         }
     }
 
     /// The sums over them of some columns.
-    pub fn over(self, columns: std::ops::Range<usize>) -> Vec<u32> {
+    pub fn over(&self, columns: std::ops::Range<usize>) -> Vec<u32> {
         match self {
             Self::Summed { below, above } => {
                 above[columns.clone()].iter().zip(&below[columns]).map(|(above, below)| above - below).collect()
             }
-            Self::Squared { width, bands, what, rows: [from, to] } => {
-                let first = columns.start / SIDE;
-                let mut found = vec![0u32; (columns.end.div_ceil(SIDE).max(first) - first) * SIDE];
-                for (n, sums) in found.chunks_mut(SIDE).enumerate() {
-                    for start in (from..to).step_by(ROWS) {
-                        let rows = [start, to.min(start + ROWS)];
-                        // Every second byte, so that there is room for what they add up to.
-                        let (mut even, mut odd) = (0u64, 0u64);
-                        for part in squares(bands, width, first + n, what, rows) {
-                            even += part & 0x00ff_00ff_00ff_00ff;
-                            odd += part >> 8 & 0x00ff_00ff_00ff_00ff;
-                        }
-                        for (n, sum) in sums.iter_mut().enumerate() {
-                            *sum += ((if n % 2 == 0 { even } else { odd }) >> (n / 2 * 16) & 0xffff) as u32;
-                        }
-                    }
-                }
-                let before = columns.start % SIDE;
-                found.drain(..before);
-                found.truncate(columns.len());
-                found
-            }
+            Self::Squared { .. } => columns.map(|column| self.at(column)).collect(),
         }
     }
+}
+
+/// The sums over rows of the columns of a square.
+fn add_up(bands: &[Band], width: usize, column: usize, what: What, [from, to]: [usize; 2]) -> [u32; SIDE] {
+    // Every second byte, so that there is room for what they add up to.
+    const EVERY_SECOND: u64 = 0x00ff_00ff_00ff_00ff;
+    let mut found = [0; SIDE];
+    for start in (from..to).step_by(ROWS) {
+        let add = |[even, odd]: [u64; 2], part| [even + (part & EVERY_SECOND), odd + (part >> 8 & EVERY_SECOND)];
+        let sums = squares(bands, width, column, what, [start, to.min(start + ROWS)]).fold([0; 2], add);
+        for (n, to) in found.iter_mut().enumerate() {
+            *to += (sums[n % 2] >> (n / 2 * 16) & 0xffff) as u32;
+        }
+    }
+    found
 }
 
 /// The sums over rows, square by square, of the columns of one, a byte each.

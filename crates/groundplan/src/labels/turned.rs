@@ -197,6 +197,16 @@ impl Turned {
         self.shares(What::Blocked, 0..self.size[0], low, high)
     }
 
+    /// [`Turned::blocked`] of a range of columns.
+    pub fn some_blocked(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
+        self.shares(What::Blocked, columns, low, high)
+    }
+
+    /// [`Turned::occupied`] of a range of columns.
+    pub fn some_occupied(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
+        self.shares(What::Occupied, columns, low, high)
+    }
+
     /// [`Turned::is_closed`] of all columns.
     pub fn all_closed(&self, low: f64, high: f64) -> Vec<bool> {
         let barred = self.all_barred(0..self.size[0], low, high);
@@ -236,7 +246,6 @@ impl Turned {
 }
 
 /// Of how many samples of each column something is true.
-#[derive(Clone, Copy)]
 pub struct Shares<'a> {
     rows: Rows<'a>,
     /// Samples of a column.
@@ -245,12 +254,12 @@ pub struct Shares<'a> {
 
 impl Shares<'_> {
     /// Of so many samples of a column.
-    pub fn at(self, column: usize) -> u32 {
+    pub fn at(&self, column: usize) -> u32 {
         self.rows.at(column)
     }
 
     /// The least number of samples whose share is as much as is asked for. Where there is no sample the share is all.
-    pub fn least(self, is_enough: impl Fn(f64) -> bool) -> u32 {
+    pub fn least(&self, is_enough: impl Fn(f64) -> bool) -> u32 {
         let share = |n: u32| if self.count == 0 { 1.0 } else { f64::from(n) / f64::from(self.count) };
         let (mut low, mut high) = (0, self.count + 1);
         while low < high {

@@ -19,16 +19,18 @@ pub struct Corridor {
 impl Corridor {
     /// The corridors among the labels.
     pub fn among(labels: &[Label]) -> Vec<Self> {
-        let met_by = |id: usize| {
-            labels.iter().filter_map(move |label| match label {
-                Label::Junction { at, corridors, .. } => corridors.contains(&(id as u32)).then_some(*at),
-                _ => None,
-            })
-        };
+        let mut met_by = vec![Vec::new(); labels.len()];
+        for label in labels {
+            if let Label::Junction { at, corridors, .. } = label {
+                for &id in corridors {
+                    met_by[id as usize].push(*at);
+                }
+            }
+        }
         let corridor = |(id, label): (usize, &Label)| match label {
             Label::Corridor { axis, width, .. } => {
                 let bare = Self { axis: *axis, width: *width, stops: Vec::new() };
-                let stops = met_by(id).chain(*axis).map(|point| bare.place(point)[0]).collect();
+                let stops = met_by[id].iter().chain(axis).map(|point| bare.place(*point)[0]).collect();
                 Some(Self { stops, ..bare })
             }
             _ => None,
@@ -45,6 +47,16 @@ impl Corridor {
         let across = (q[1] - p[1]).abs();
         let within = (0.0..=distance(self.axis[0], self.axis[1])).contains(&along);
         within && p[1] * q[1] < 0.0 && across >= full * self.width && across >= (q[0] - p[0]).abs()
+    }
+
+    /// A rectangle that holds the middle of every closure that runs across, none of which is longer than so much, metres.
+    pub fn around(&self, longest: f64) -> Vec<[f64; 2]> {
+        let [from, to] = self.axis;
+        let length = distance(from, to).max(1e-9);
+        let [tx, ty] = [0, 1].map(|n| (to[n] - from[n]) / length);
+        let corner = |s: f64, t: f64| [from[0] + s * tx - t * ty, from[1] + s * ty + t * tx];
+        let half = longest / 2.0;
+        vec![corner(0.0, -half), corner(length, -half), corner(length, half), corner(0.0, half)]
     }
 
     /// A point's place along the centre line, from its first end, and across it.

@@ -18,6 +18,7 @@ mod outlines;
 mod raster;
 mod runs;
 
+use super::near::Near;
 use super::places::Squares;
 use super::{Evidence, Label, Purpose, outline};
 use crate::grid::{Grid, State, tidy};
@@ -133,7 +134,14 @@ impl Space {
         let mut bars = gaps::along_lines(evidence, &self.raster);
         bars.retain(|bar| !bar.is_at_solid(&self.raster));
         let together = self.raster.pixels(TOGETHER);
-        let fresh = |narrow: &&Bar| !bars.iter().any(|gap| gap.is_near(narrow, together));
+        let ends: Vec<_> = (0..).zip(&bars).flat_map(|(n, gap)| gap.ends.map(|end| (n, end))).collect();
+        let near = Near::points(&ends);
+        let fresh = |narrow: &&Bar| {
+            let [x, y] = narrow.ends[0];
+            let around = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+            let around = around.map(|[s, t]| [x + s * together, y + t * together]);
+            !near.within(&around).into_iter().any(|gap| bars[gap as usize].is_near(narrow, together))
+        };
         let narrows: Vec<Bar> = self.narrows.iter().filter(fresh).copied().collect();
         bars.extend(narrows);
         bars
@@ -152,11 +160,14 @@ pub fn find(
     squares: &Squares,
 ) -> Vec<Label> {
     let Space { raster, clearance, .. } = space;
+    let longest = bars.iter().map(Bar::length).fold(0.0, f64::max) * raster.resolution;
+    let ways = Near::polygons(&racked.ways);
+    let crossed = Near::polygons(&corridors.iter().map(|corridor| corridor.around(longest)).collect::<Vec<_>>());
     bars.retain(|bar| {
         let ends = bar.ends.map(|end| evidence.grid.frame.to_metres(raster.to_grid(end)));
         let middle = [0, 1].map(|axis| f64::midpoint(ends[0][axis], ends[1][axis]));
-        !racked.ways.iter().any(|way| outline::holds(way, middle))
-            && !corridors.iter().any(|corridor| corridor.is_crossed(ends))
+        !ways.at(middle).iter().any(|&way| outline::holds(&racked.ways[way as usize], middle))
+            && !crossed.at(middle).iter().any(|&corridor| corridors[corridor as usize].is_crossed(ends))
     });
     let parameters = evidence.parameters;
     let rules = Rules { openness: parameters.rooms_openness, least_area: parameters.rooms_min_area };
@@ -252,10 +263,11 @@ fn regions(
     } else {
         samples(&numbers, |n| pieces[n], &all.iter().map(|piece| piece.pixels).collect::<Vec<_>>(), LOOKS)
     };
+    let grounds = Near::polygons(&racked.grounds);
     let within_rack = |n: usize| {
         let on_rack = |pixel: &usize| {
             let at = evidence.grid.frame.to_metres(raster.to_grid(raster.place(*pixel)));
-            racked.grounds.iter().any(|ground| outline::holds(ground, at))
+            grounds.at(at).iter().any(|&ground| outline::holds(&racked.grounds[ground as usize], at))
         };
         looks.get(n).is_some_and(|looks| 2 * looks.iter().filter(|pixel| on_rack(pixel)).count() > looks.len())
     };
