@@ -1,0 +1,130 @@
+"""What a survey with labels costs as maps grow: seconds, and the memory that it holds beyond the map's mapped pages.
+
+Simulated halls, each of its own kind, stand side by side on 200 x 200 m; larger maps are so many of these as they have
+room for. Each is a PGM, read by memory map and surveyed with the defaults in a process of its own. Linux only. Ends
+with exit code 1 when a bar is missed: 1 GiB at 1600 megapixels, and for a pixel 1.3 times what one costs on 16.
+``bench/scale.py 16 64`` measures these sizes only, ``--threads 1`` on so many threads.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from groundplan.simulate import office, warehouse
+
+SIZES = (1, 4, 16, 64, 256, 1600)
+RESOLUTION = 0.05
+#: Pixels along the side of the piece that is laid out again and again, and of the place of one hall in it.
+PIECE, PLACE = 4000, 1333
+BAR_MIB, BAR_RATIO = 1024, 1.3
+
+HALLS: tuple[dict[str, Any], ...] = (
+    {"width": 62, "depth": 60},
+    {"width": 58, "depth": 62, "bay": 3.3, "aisle": 2.4, "rack_depth": 0.9},
+    {"width": 60, "depth": 56, "uneven": 0.6, "clutter": 1.2},
+    {"width": 63, "depth": 50, "pillars": 12.0, "aisle": 4.2},
+    {"width": 28, "depth": 60, "halls": 2, "gap": 3.0},
+    {"width": 60, "depth": 61, "staggered": 12.0, "cross_aisles": 2},
+    {"width": 61, "depth": 58, "sparse": 0.5, "bay": 1.9},
+    {"width": 55, "depth": 62, "goods": 2.0, "drift": 0.1},
+)
+
+#: Surveys a map and says what that took.
+CHILD = """
+import json, sys, time
+import groundplan
+map = groundplan.read(sys.argv[1], resolution=float(sys.argv[2]), origin=(0, 0))
+print("ready", flush=True)
+sys.stdin.readline()
+since, cpu = time.perf_counter(), time.process_time()
+survey = groundplan.survey(map, threads=int(sys.argv[3]) or None)
+spent = time.perf_counter() - since, time.process_time() - cpu
+print(json.dumps([*spent, len(survey.lines.offsets), len(survey.subdivision.areas), len(survey.labels)]), flush=True)
+"""
+
+
+def piece() -> npt.NDArray[np.uint8]:
+    """Halls of all kinds and an office, side by side."""
+    pixels = np.full((PIECE, PIECE), 205, np.uint8)
+    maps = [warehouse(seed=seed, **options).map for seed, options in enumerate(HALLS)] + [office(seed=1).map]
+    for n, map in enumerate(maps):
+        row, column = (PLACE * k for k in divmod(n, 3))
+        hall = np.asarray(map.pixels)[:PLACE, :PLACE]
+        pixels[row : row + hall.shape[0], column : column + hall.shape[1]] = hall
+    return pixels
+
+
+def write(path: Path, one: npt.NDArray[np.uint8], side: int) -> None:
+    """A square PGM of the piece again and again, a row of pieces at a time."""
+    wide = np.tile(one, (1, -(-side // PIECE)))[:, :side]
+    with path.open("wb") as file:
+        file.write(b"P5\n%d %d\n255\n" % (side, side))
+        for row in range(0, side, PIECE):
+            wide[: side - row].tofile(file)
+
+
+def held(pid: int) -> int:
+    """Bytes of memory that a process holds for itself."""
+    for line in Path(f"/proc/{pid}/status").read_text().splitlines():
+        if line.startswith("RssAnon:"):
+            return int(line.split()[1]) * 1024
+    return 0
+
+
+def measure(path: Path, threads: int) -> tuple[list[float], int]:
+    """Seconds, seconds of all cores, lines, faces and labels; and the most memory beyond what was held before."""
+    words = [sys.executable, "-c", CHILD, str(path), str(RESOLUTION), str(threads)]
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdin is not None and child.stdout is not None
+        child.stdout.readline()
+        before = most = held(child.pid)
+        child.stdin.write("\n")
+        child.stdin.flush()
+        while child.poll() is None:
+            most = max(most, held(child.pid))
+            time.sleep(0.005)
+        said = child.stdout.read()
+    if child.returncode:
+        raise SystemExit(f"the survey of {path.name} failed: {child.returncode}")
+    return json.loads(said), most - before
+
+
+def main() -> int:
+    """Make the maps, measure, print the table, hold it to the bars."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("sizes", nargs="*", type=int, default=SIZES, help="megapixels")
+    parser.add_argument("--threads", type=int, default=0, help="as many as there are cores")
+    words = parser.parse_args()
+    if not Path("/proc/self/status").exists():
+        print("the memory of a process is only measured on Linux")
+        return 0
+    one = piece()
+    print(f"{'Mpx':>5}{'seconds':>9}{'of cores':>10}{'ns a pixel':>12}{'MiB':>7}{'lines':>7}{'faces':>9}{'labels':>8}")
+    costs: dict[int, tuple[float, float]] = {}
+    with tempfile.TemporaryDirectory() as directory:
+        path = Path(directory) / "map.pgm"
+        for size in words.sizes:
+            side = round((size * 1e6) ** 0.5)
+            write(path, one, side)
+            (seconds, cores, *counts), most = measure(path, words.threads)
+            costs[size] = (1e9 * cores / side**2, most / 2**20)
+            lines, faces, labels = (int(count) for count in counts)
+            cost = f"{size:5}{seconds:9.2f}{cores:10.2f}{costs[size][0]:12.1f}{costs[size][1]:7.0f}"
+            print(f"{cost}{lines:7}{faces:9}{labels:8}", flush=True)
+    missed = 1600 in costs and costs[1600][1] > BAR_MIB
+    missed |= 16 in costs and any(cost > BAR_RATIO * costs[16][0] for size, (cost, _) in costs.items() if size > 16)
+    return int(missed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
