@@ -45,6 +45,10 @@ class GroundplanError(Exception):
         self.code = code
         self.hint = hint or _HINTS.get(code)
 
+    def __reduce__(self) -> tuple[type[GroundplanError], tuple[str, str, str | None]]:
+        # Raised in one process, it is told in another.
+        return type(self), (self.code, str(self), self.hint)
+
 
 class MapError(GroundplanError):
     """A map that cannot be read; the message names the file and the value."""

@@ -490,14 +490,16 @@ class Survey(Stage):
 
 
 def survey(
-    map: Map | npt.ArrayLike,
+    map: Map | npt.ArrayLike | os.PathLike[str],
     *,
     resolution: float | None = None,
-    origin: Sequence[float] = (0.0, 0.0, 0.0),
+    origin: Sequence[float] | None = None,
     directions: Directions | None = None,
     lines: Lines | None = None,
     threads: int | None = None,
     keep: bool = False,
+    client: Any = None,
+    reading: dict[str, Any] | None = None,
     **parameters: Any,
 ) -> Survey:
     """Survey a map: all stages in a row.
@@ -508,13 +510,18 @@ def survey(
         A `Map`, or an array: uint8 as a picture of a map (0 occupied, 205 unknown, 254 free, top row first), int8 as
         the data of a nav_msgs/OccupancyGrid (-1, 0..100, lowest row first), bool as occupied or not (top row first).
     resolution, origin
-        Of an array: metres per pixel, and the pose of its lower left corner (m, m, rad).
+        Of an array or a file: metres per pixel, and the pose of its lower left corner (m, m, rad).
     directions, lines
         Results of your own in place of these stages'. Lines without directions are of those that are found.
     threads
         At most so many; all cores by default. Any number gives the same survey.
     keep
         Keep the gradients for `Survey.update`, 13 bytes for each edge pixel; the first update finds them again if not.
+    client
+        A ``dask.distributed.Client``: its workers do what has to be done on pixels. `map` may be a file's path then; of
+        an 8-bit PGM, a Zarr array and a GeoTIFF the workers read the rows that they need by themselves.
+    reading
+        Of a file's path: how to read it, by the names of `groundplan.read`.
     **parameters
         By the table's names, with an underscore for the dot: ``lines_snr=4``.
 
@@ -524,15 +531,28 @@ def survey(
         A parameter that is not known or out of its range; ``stage.input`` for directions or lines that do not fit.
     MapError
         An array that is no map.
+    GroundplanError
+        ``cluster.path``, ``cluster.failed`` for what goes wrong on workers.
     """
+    stages = (("directions", Directions, directions), ("lines", Lines, lines))
+    own = {name: taken(kind, name, value) for name, kind, value in stages if value is not None}
+    if client is not None and isinstance(map, str | os.PathLike):
+        from groundplan import _cluster
+
+        resolve(parameters)
+        frame = {"resolution": resolution} | ({"origin": origin} if origin is not None else {})
+        site = _cluster.open_map(map, frame | (reading or {}), client)
+        return _cluster.survey_site(site, client, parameters, threads, own, keep=keep)[0]
     if not isinstance(map, Map):
         if not is_array(map):
             raise MapError("map.input", f"{shown(map)} is no map", "read it first: groundplan.read(path)")
         if resolution is None:
             raise MapError("map.resolution", "an array needs its resolution", "survey(array, resolution=0.05)")
-        map = from_array(np.asarray(map), resolution, tuple(origin))
-    stages = (("directions", Directions, directions), ("lines", Lines, lines))
-    own = {name: taken(kind, name, value) for name, kind, value in stages if value is not None}
+        map = from_array(np.asarray(map), resolution, (0.0, 0.0, 0.0) if origin is None else tuple(origin))
+    if client is not None:
+        from groundplan import _cluster
+
+        return _cluster.survey_site(_cluster.Site(map), client, parameters, threads, own, keep=keep)[0]
     return surveyed(map, parameters, threads, own, {}, keep=keep)
 
 
@@ -547,7 +567,7 @@ def surveyed(
 ) -> Survey:
     """The survey of a map, over stages of the caller's own and over parts that are known, both as the core has them."""
     grid, values = layout(map), named(parameters)
-    if "lines" in own and "directions" not in own:
+    if "lines" in own and "directions" not in own | parts:
         edges = parts.get("gradients") or run(_core.find_gradients, grid, values, cores(threads))
         parts = parts | {"gradients": edges, "directions": run(_core.find_directions, grid, edges, values)}
     found = run(_core.survey, grid, values, cores(threads), own | parts, keep)

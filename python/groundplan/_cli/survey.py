@@ -49,6 +49,11 @@ def fill(own: argparse.ArgumentParser) -> None:
         action="store_true",
         help="print the survey instead of the summary, and write files only where -o, --figures or --export asks",
     )
+    own.add_argument(
+        "--dask",
+        metavar="ADDRESS",
+        help="have the workers of the Dask scheduler at this address do what is done on pixels; the survey is the same",
+    )
     own.add_argument("-q", "--quiet", action="store_true", help="no summary, no warnings: only errors are told")
     add_method(own)
     add_reading(own, frame=True)
@@ -146,13 +151,16 @@ def run(arguments: argparse.Namespace) -> None:
         arguments.parser.error(f"--origin has {len(origin)} numbers; it takes 2 or 3: X Y [YAW]")
     name = Path(arguments.map).name
     with terminal.status(arguments.quiet) as status:
-        map = groundplan.read(
-            arguments.map, progress=lambda share: status(f"reading {name}, {100 * share:.0f} %"), **given
-        )
-        refuse_nothing(map, name)
-        found = terminal.working(
-            status, f"surveying {name}", lambda: groundplan.survey(map, threads=arguments.threads, **chosen)
-        )
+        if arguments.dask:
+            found, map = on_cluster(arguments, chosen, given, name, status)
+        else:
+            map = groundplan.read(
+                arguments.map, progress=lambda share: status(f"reading {name}, {100 * share:.0f} %"), **given
+            )
+            refuse_nothing(map, name)
+            found = terminal.working(
+                status, f"surveying {name}", lambda: groundplan.survey(map, threads=arguments.threads, **chosen)
+            )
         named = dataclasses.replace(found.map, image=printable(arguments.name or found.map.image))
         out = directory(arguments)
         found = dataclasses.replace(found, map=named, source=seen_from(out or Path(), arguments.map), reading=given)
@@ -174,6 +182,22 @@ def run(arguments: argparse.Namespace) -> None:
         for file in written:
             terminal.say("wrote", file)
     export.tell(refused)
+
+
+def on_cluster(
+    arguments: argparse.Namespace, chosen: dict[str, Any], given: dict[str, Any], name: str, status: terminal.Status
+) -> tuple[Survey, Map]:
+    """The survey of a map by the workers of a Dask scheduler, and the map for its picture."""
+    from groundplan import _cluster
+
+    with _cluster.connect(arguments.dask) as client:
+        site = terminal.working(status, f"counting {name}", lambda: _cluster.open_map(arguments.map, given, client))
+        refuse_nothing(site.map, name)
+        return terminal.working(
+            status,
+            f"surveying {name}",
+            lambda: _cluster.survey_site(site, client, chosen, arguments.threads, {}),
+        )
 
 
 def refuse_nothing(map: Map, name: str) -> None:

@@ -24,6 +24,7 @@ from groundplan.maps._dialects import (
 )
 from groundplan.maps._map import FREE, UNKNOWN, MapWarning
 from groundplan.maps._source import Bytes, Described, Occupancies, Picture
+from groundplan.maps._tally import Tally, tally
 from groundplan.maps._warnings import (
     assumed_limits,
     grey_as_free,
@@ -71,8 +72,11 @@ def meaning_of(
     return Meaning(known, chosen, bool(described.negate if negate is None else negate), high, low), stated
 
 
-def weigh(content: Occupancies, meaning: Meaning, stated: tuple[bool, bool]) -> Interpreted:
-    """Pixels, tables and warnings of occupancies; of the meaning, the stated thresholds alone count."""
+def weigh(content: Occupancies, meaning: Meaning, stated: tuple[bool, bool], known: Tally | None = None) -> Interpreted:
+    """Pixels, tables and warnings of occupancies; of the meaning, the stated thresholds alone count.
+
+    `known` is the tally of all pixels where these are not at hand.
+    """
     values = np.arange(256, dtype=np.uint8).view(np.int8).copy()
     if content.certain:
         values = np.where(np.arange(256) == 0, 0, 100).astype(np.int8)
@@ -82,14 +86,18 @@ def weigh(content: Occupancies, meaning: Meaning, stated: tuple[bool, bool]) -> 
     high = 100.0 * meaning.occupied_thresh if stated[0] else OCCUPIED_PERCENT
     low = 100.0 * meaning.free_thresh if stated[1] else FREE_PERCENT
     states = states_of(values, high, low)
-    return content.pixels, values, states, nonsense(shares(greys.count(content.pixels), states), None, None)
+    counts = greys.count(content.pixels) if known is None else known.counts
+    return content.pixels, values, states, nonsense(shares(counts, states), None, None)
 
 
-def interpret(picture: Picture, meaning: Meaning, stated: tuple[bool, bool], unknown: Unknown) -> Interpreted:
-    """Pixels, tables and warnings of a picture."""
+def interpret(
+    picture: Picture, meaning: Meaning, stated: tuple[bool, bool], unknown: Unknown, known: Tally | None = None
+) -> Interpreted:
+    """Pixels, tables and warnings of a picture; `known` is the tally of all pixels where these are not at hand."""
     chosen = _chosen(unknown)
     pixels, shades, clear = _with_alpha(picture, meaning)
-    counts, border = greys.count(pixels), _border(pixels)
+    seen = tally(pixels) if known is None else known
+    counts, border = seen.counts, seen.border
     warnings: list[MapWarning] = []
 
     def reading(of: Meaning) -> tuple[npt.NDArray[np.int8], Bytes, greys.Levels]:
@@ -129,7 +137,7 @@ def interpret(picture: Picture, meaning: Meaning, stated: tuple[bool, bool], unk
     darker = any(warning.code == "unknown-as-occupied" for warning in warnings)
     odd = nonsense(shares(counts, states), high, low, walls_darker=darker)
     if meaning.mode != "raw" and not odd:
-        odd = walls_as_unknown(pixels, counts, states, darkness(shades, meaning))
+        odd = walls_as_unknown(seen.rows, counts, states, darkness(shades, meaning))
     return pixels, values, states, warnings + odd
 
 
@@ -192,11 +200,3 @@ def _spare(pixels: Bytes, shades: npt.NDArray[np.float64], meaning: Meaning) -> 
     """A pixel value for transparency where all 256 are in use: one that means unknown anyway, else the rarest."""
     unknown = np.flatnonzero(tables(shades, meaning)[0] == -1)
     return int(unknown[0]) if unknown.size else int(greys.count(pixels).argmin())
-
-
-def _border(pixels: Bytes) -> npt.NDArray[np.int64]:
-    """Histogram of the outermost pixels."""
-    total = np.zeros(256, np.int64)
-    for edge in (pixels[:1], pixels[-1:], pixels[:, :1], pixels[:, -1:]):
-        total += greys.count(edge)
-    return total

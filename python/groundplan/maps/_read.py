@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from groundplan._errors import MapError
+from groundplan.maps._distant import Distant, distant
 from groundplan.maps._interpret import Unknown, interpret, meaning_of, weigh
 from groundplan.maps._map import Map
 from groundplan.maps._open import Kind, kind_of
-from groundplan.maps._source import Described, Occupancies, Picture, Progress
+from groundplan.maps._source import Described, Occupancies, Picture, Progress, Span
+from groundplan.maps._tally import Tally
 from groundplan.maps._warnings import rounded
 from groundplan.maps.image import read_image
 from groundplan.maps.map_server import check_origin, check_resolution, read_yaml
@@ -98,13 +100,30 @@ def read(
     GroundplanError
         ``extra.missing`` where the library for such files is not installed.
     """
+    given = {"resolution": resolution, "origin": origin, "topic": topic, "stamp": stamp, "band": band}
+    given |= {"dialect": dialect, "unknown": unknown, "negate": negate, "mode": mode, "min_hits": min_hits}
+    given |= {"occupied_thresh": occupied_thresh, "free_thresh": free_thresh}
+    return read_or_leave(path, given, None, progress)[0]
+
+
+def read_or_leave(
+    path: str | os.PathLike[str],
+    given: dict[str, Any],
+    count: Callable[[Distant], Tally] | None = None,
+    progress: Progress | None = None,
+) -> tuple[Map, Distant | None]:
+    """As `read`; or where the file can be read row by row and others `count` its pixels, a map without them.
+
+    Such a map has the right shape and stands for the file that comes with it.
+    """
+    resolution, origin, dialect = given.get("resolution"), given.get("origin"), given.get("dialect", "nav2")
     place = Path(path).expanduser() if str(path).startswith("~") else Path(path)
     kind = kind_of(place)
-    own = {"topic": topic, "stamp": stamp, "band": band, "min_hits": min_hits}
+    own = {name: given.get(name) for name in _ONLY}
     _refuse(place, _CALLED[kind], [name for name, value in own.items() if value is not None and _ONLY[name] != kind])
     metres = None if resolution is None else check_resolution(resolution, "resolution")
     luma = dialect == "nav2"
-    described = _described(place, kind, own, metres, posed=origin is None, luma=luma, progress=progress)
+    described, content, far = _opened(place, kind, given, metres, luma=luma, leave=count is not None, progress=progress)
     warnings = list(described.warnings)
     where = str(place)
     metres = described.resolution if metres is None else metres
@@ -119,20 +138,43 @@ def read(
         if kind == "yaml":
             raise MapError("map.origin", f"{where} states no origin", "--origin sets it, such as --origin 0 0 0")
         pose = (0.0, 0.0, 0.0)
-    meaning, stated = meaning_of(described, dialect, negate, mode, occupied_thresh, free_thresh, where)
-    content = described.content
-    if content is None:
-        content = read_image(described.image, luma=luma, progress=progress)
+    greys = {name: given.get(name) for name in ("unknown", "negate", "mode")}
+    thresholds = given.get("occupied_thresh"), given.get("free_thresh")
+    meaning, stated = meaning_of(described, dialect, greys["negate"], greys["mode"], *thresholds, where)
+    known = None if far is None or count is None else count(far)
     if isinstance(content, Occupancies):
-        greys = {"unknown": unknown, "negate": negate, "mode": mode}
         _refuse(place, "made of occupancies", [name for name, value in greys.items() if value is not None])
-        pixels, values, states, odd = weigh(content, meaning, stated)
+        pixels, values, states, odd = weigh(content, meaning, stated, known)
     else:
         warnings += content.warnings
-        pixels, values, states, odd = interpret(content, meaning, stated, unknown)
+        pixels, values, states, odd = interpret(content, meaning, stated, greys["unknown"], known)
+    if far is not None:
+        pixels = np.broadcast_to(np.uint8(0), far.shape)
     if resolution is None and kind in ("yaml", "image"):
         warnings += rounded(metres, pixels.shape)
-    return Map(pixels, values, states, metres, pose, described.image.name, tuple(warnings + odd))
+    return Map(pixels, values, states, metres, pose, described.image.name, tuple(warnings + odd)), far
+
+
+def _opened(
+    path: Path,
+    kind: Kind,
+    given: dict[str, Any],
+    resolution: float | None,
+    *,
+    luma: bool,
+    leave: bool,
+    progress: Progress | None,
+) -> tuple[Described, Picture | Occupancies, Distant | None]:
+    """What is stated about the map, its pixels, and where they may be left: then there is a row of them at least."""
+    posed = given.get("origin") is None
+    rows = (0, 1) if leave else None
+    described = _described(path, kind, given, resolution, rows, posed=posed, luma=luma, progress=progress)
+    content = described.content or read_image(described.image, luma=luma, progress=progress)
+    far = distant(described, content, luma=luma) if leave else None
+    if leave and far is None and described.shape is not None:
+        described = _described(path, kind, given, resolution, None, posed=posed, luma=luma, progress=progress)
+        content = described.content or content
+    return described, content, far
 
 
 def from_array(
@@ -197,6 +239,7 @@ def _described(
     kind: Kind,
     own: dict[str, Any],
     resolution: float | None,
+    rows: Span | None,
     *,
     posed: bool,
     luma: bool,
@@ -208,20 +251,22 @@ def _described(
     if kind == "bag":
         from groundplan.maps.bags import read_bag
 
-        return read_bag(path, topic=own["topic"], stamp=own["stamp"], posed=posed, progress=progress)
+        return read_bag(path, topic=own.get("topic"), stamp=own.get("stamp"), posed=posed, progress=progress)
     if kind == "tiff":
         from groundplan.maps.geotiff import is_geotiff, read_geotiff
 
         if is_geotiff(path):
-            return read_geotiff(path, resolution, posed=posed, luma=luma, progress=progress)
+            return read_geotiff(path, resolution, posed=posed, luma=luma, rows=rows, progress=progress)
     if kind == "zarr":
         from groundplan.maps.zarr_array import read_zarr
 
-        return read_zarr(path, progress=progress)
+        return read_zarr(path, rows=rows, progress=progress)
     if kind == "points":
         from groundplan.maps.points import read_points
 
-        return read_points(path, band=own["band"], resolution=resolution, min_hits=own["min_hits"], progress=progress)
+        return read_points(
+            path, band=own.get("band"), resolution=resolution, min_hits=own.get("min_hits"), progress=progress
+        )
     return Described(path)
 
 

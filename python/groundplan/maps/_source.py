@@ -15,6 +15,9 @@ from groundplan.maps._map import MapWarning
 Bytes = npt.NDArray[np.uint8]
 Origin = tuple[float, float, float]
 
+#: Rows from, to.
+Span = tuple[int, int]
+
 #: Is told the share that was read, 0 to 1.
 Progress = Callable[[float], None]
 
@@ -79,6 +82,10 @@ class Described:
         The file with the pixels.
     content : Picture, Occupancies or None
         The pixels, where they were read together with what is said of them.
+    shape : (int, int) or None
+        Rows and columns of all pixels, where only some rows were read.
+    block : int
+        Rows that are stored together, and best read so.
     """
 
     image: Path
@@ -90,6 +97,8 @@ class Described:
     free_thresh: float | None = None
     warnings: tuple[MapWarning, ...] = ()
     content: Picture | Occupancies | None = None
+    shape: tuple[int, int] | None = None
+    block: int = 1
 
 
 def bands(height: int, width: int, pixels: int = 1 << 20) -> Iterator[slice]:

@@ -17,7 +17,7 @@ MOSTLY = 0.5
 #: Darker than the usual unknown by this, a grey is something else; a state of its own where walls are looked for.
 DARKER, DARK = 16 / 255, 3
 #: Rows that are looked at, pixels behind the end of the free space, and the fewest ends that say something.
-ROWS, BEHIND, FEWEST = 128, 4, 50
+BEHIND, FEWEST = 4, 50
 
 #: map_saver rounds the resolution to millimetres; from this error over the map's length on, in metres, it is told.
 ROUNDING = 0.25
@@ -119,7 +119,7 @@ def nonsense(
 
 
 def walls_as_unknown(
-    pixels: npt.NDArray[np.uint8],
+    rows: npt.NDArray[np.uint8],
     counts: npt.NDArray[np.int64],
     states: npt.NDArray[np.uint8],
     p: npt.NDArray[np.float64],
@@ -128,8 +128,8 @@ def walls_as_unknown(
 
     Parameters
     ----------
-    pixels : (height, width) uint8
-        Some rows of it are looked at.
+    rows : (N, width) uint8
+        Some rows of the picture.
     counts, states, p : (256,)
         How many pixels have each value, its state, and how dark it is, 0 to 1.
     """
@@ -138,7 +138,7 @@ def walls_as_unknown(
     usual = int(np.where(states == UNKNOWN, counts, -1).argmax())
     limit = float(p[usual]) + DARKER
     kind = np.where(states == UNKNOWN, np.where(p > limit, DARK, UNKNOWN), states).astype(np.uint8)
-    rows = kind[pixels[:: max(1, len(pixels) // ROWS)]]
+    rows = kind[rows]
     seen = {OCCUPIED: 0, DARK: 0}
     for line in (rows, rows[:, ::-1]):
         ends = np.argwhere((line[:, :-1] == FREE) & (line[:, 1:] != FREE))

@@ -23,7 +23,7 @@ from groundplan.maps import _canvas
 from groundplan.maps._canvas import Canvas
 from groundplan.maps._map import MapWarning
 from groundplan.maps._open import open_file
-from groundplan.maps._source import Bytes, Described, Occupancies, Origin, Picture, Progress
+from groundplan.maps._source import Bytes, Described, Occupancies, Origin, Picture, Progress, Span
 from groundplan.maps.image import grey_of, opened, refuse_growth
 from groundplan.maps.map_server import check_resolution
 from groundplan.maps.pgm import sixteen_bits
@@ -65,6 +65,7 @@ def read_geotiff(
     *,
     posed: bool = True,
     luma: bool = True,
+    rows: Span | None = None,
     progress: Progress | None = None,
 ) -> Described:
     """Read a GeoTIFF, with a coordinate reference system or without.
@@ -79,6 +80,8 @@ def read_geotiff(
         Whether the file's own origin is wanted; where neither that nor its resolution is, its frame is not looked at.
     luma : bool
         How colour becomes grey, as in `read_image`.
+    rows : (int, int), optional
+        From, to: the rows of the map that are wanted, counted from its top.
 
     Raises
     ------
@@ -100,14 +103,18 @@ def read_geotiff(
                     metres, origin, upwards = frame(data.transform, data.height, str(path))
                 else:
                     upwards = data.transform.determinant > 0 and not data.transform.is_identity
-                content, odd = _content(path, data, luma=luma, progress=progress)
+                if rows is not None and upwards:
+                    rows = data.height - rows[1], data.height - rows[0]
+                content, odd = _content(path, data, rows, luma=luma, progress=progress)
+                shape, block = (data.height, data.width), data.block_shapes[0][0]
     except (GroundplanError, MemoryError):
         raise
     except Exception as fault:  # GDAL's errors are of many kinds
         raise MapError("map.corrupt", f"{path} is a damaged TIFF: {' '.join(str(fault).split())}") from fault
     if upwards:
         content = _flipped(content)
-    return Described(path, metres, origin if posed else None, warnings=tuple(odd), content=content)
+    own = origin if posed else None
+    return Described(path, metres, own, warnings=tuple(odd), content=content, shape=shape, block=block)
 
 
 def frame(transform: Any, height: int, where: str) -> tuple[float, Origin, bool]:
@@ -172,10 +179,11 @@ def _refuse_other_units(path: Path, data: Any) -> None:
 
 
 def _content(
-    path: Path, data: Any, *, luma: bool, progress: Progress | None
+    path: Path, data: Any, rows: Span | None, *, luma: bool, progress: Progress | None
 ) -> tuple[Picture | Occupancies, list[MapWarning]]:
-    """The pixels, and what was lost."""
+    """The pixels of all rows of the file, or of some, and what was lost."""
     from rasterio.enums import ColorInterp, MaskFlags
+    from rasterio.windows import Window
 
     kinds, colours = set(data.dtypes), data.count - (ColorInterp.alpha in data.colorinterp)
     if len(kinds) > 1 or colours not in BANDS.get(data.dtypes[0], ()):
@@ -187,18 +195,19 @@ def _content(
     if masked and not signed and data.height * data.width > _canvas.IN_MEMORY:
         said = f"{path} has {data.width} x {data.height} pixels and a mask beside them"
         raise MapError("map.too-large", said, "gdal_translate -b 1 -mask none -a_nodata 205 leaves the mask out")
-    with Canvas(path, data.height, data.width, progress) as canvas:
-        for window in _windows(data):
+    first, end = rows or (0, data.height)
+    with Canvas(path, end - first, data.width, progress) as canvas:
+        for window in _windows(data, first, end):
             bands = data.read(list(range(1, colours + 1)), window=window)
             if masked and signed:
                 bands[0][data.read_masks(1, window=window) == 0] = -1
-            canvas.put(window.row_off, _as_bytes(bands, luma=luma))
+            canvas.put(window.row_off - first, _as_bytes(bands, luma=luma))
         pixels = canvas.pixels()
     whole = data.nodata is not None and math.isfinite(data.nodata) and data.nodata == int(data.nodata)
     nodata = int(data.nodata) if whole else None
     if signed:
         return Occupancies(pixels, absent=None if nodata is None else nodata & 255), []
-    alpha = data.read_masks(1) if masked else None
+    alpha = data.read_masks(1, window=Window(0, first, data.width, end - first)) if masked else None
     if alpha is not None and alpha.min() == 255:
         alpha = None
     most = 65535 if data.dtypes[0] == "uint16" else 255
@@ -214,14 +223,14 @@ def _content(
     return found, [] if most == 255 else [sixteen_bits(path)]
 
 
-def _windows(data: Any) -> Iterator[Any]:
-    """Bands of whole block rows, each about so many pixels that reading it is worth it."""
+def _windows(data: Any, first: int, end: int) -> Iterator[Any]:
+    """Bands of rows, from a block's first on whole blocks, each about so many pixels that reading it is worth it."""
     from rasterio.windows import Window
 
     block = data.block_shapes[0][0]
     rows = max(1, AT_A_TIME // (data.width * block)) * block
-    for top in range(0, data.height, rows):
-        yield Window(0, top, data.width, min(rows, data.height - top))
+    for top in range(first, end, rows):
+        yield Window(0, top, data.width, min(rows, end - top))
 
 
 def _as_bytes(bands: npt.NDArray[Any], *, luma: bool) -> Bytes:

@@ -16,15 +16,15 @@ import numpy as np
 from groundplan._errors import GroundplanError, MapError
 from groundplan._extras import needed
 from groundplan.maps._canvas import Canvas
-from groundplan.maps._source import Described, Occupancies, Picture, Progress
+from groundplan.maps._source import Described, Occupancies, Picture, Progress, Span
 from groundplan.maps.map_server import check_mode, check_negate, check_origin, check_resolution, check_threshold
 
 #: Pixels that are read at a time at the least, and a row of chunks at the most, in bytes.
 AT_A_TIME, LARGEST_BAND = 1 << 23, 1 << 31
 
 
-def read_zarr(path: Path, *, progress: Progress | None = None) -> Described:
-    """Read a Zarr array, or the only two-dimensional one of a group.
+def read_zarr(path: Path, *, rows: Span | None = None, progress: Progress | None = None) -> Described:
+    """Read a Zarr array, or the only two-dimensional one of a group; of its pixels some `rows` alone, from, to.
 
     Raises
     ------
@@ -44,7 +44,8 @@ def read_zarr(path: Path, *, progress: Progress | None = None) -> Described:
             raise MapError(
                 "map.empty", f"{where} is empty: no chunk of its {array.shape[1]} x {array.shape[0]} pixels is there"
             )
-        pixels = _pixels(path, array, progress)
+        block = _block(array)
+        pixels = _pixels(path, array, block, progress) if rows is None else _rows(array, rows)
     except (GroundplanError, MemoryError):
         raise
     except Exception as fault:  # a store can be damaged anywhere
@@ -65,6 +66,8 @@ def read_zarr(path: Path, *, progress: Progress | None = None) -> Described:
         low,
         tuple(warnings),
         Picture(pixels) if array.dtype == np.uint8 else Occupancies(pixels[::-1]),
+        tuple(array.shape),
+        block,
     )
 
 
@@ -82,10 +85,21 @@ def _array(path: Path, found: Any) -> Any:
     raise MapError("map.zarr", f"{path} is a Zarr group with several arrays: {names}", f"name one of them: {first}")
 
 
-def _pixels(path: Path, array: Any, progress: Progress | None) -> Any:
+def _block(array: Any) -> int:
+    """Rows of a chunk."""
+    return int(min(array.shape[0], (getattr(array, "shards", None) or array.chunks)[0]))
+
+
+def _rows(array: Any, rows: Span) -> Any:
+    """Some rows of the map, counted from its top, as they lie."""
+    height, (top, end) = array.shape[0], rows
+    lies = slice(top, end) if array.dtype == np.uint8 else slice(height - end, height - top)
+    return np.ascontiguousarray(array[lies]).view(np.uint8)
+
+
+def _pixels(path: Path, array: Any, chunk: int, progress: Progress | None) -> Any:
     """All pixels, a row of chunks at a time."""
     height, width = array.shape
-    chunk = min(height, (getattr(array, "shards", None) or array.chunks)[0])
     if chunk * width > LARGEST_BAND:
         said = f"{path} has chunks of {chunk} rows: one row of them has {chunk * width} pixels"
         raise MapError("map.too-large", said, "rechunk it, such as to 1024 x 1024")

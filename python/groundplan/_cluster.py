@@ -1,0 +1,254 @@
+"""A survey on more machines: the passes over pixels as Dask's futures, all else here.
+
+Every pass is a function of a band of rows, with as many rows around it as a gradient's window needs. Its results are
+integers, or rows in their order, so that they come to the same bytes wherever the map is cut and whoever was first:
+
+1. counts of the pixels' values, from which it is known what they mean (of a map that the workers read themselves);
+2. the gradients of a band, and the states of its pixels, packed;
+3. what a band adds to the faces, once the lines are known.
+"""
+
+from __future__ import annotations
+
+import os
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from groundplan import _core
+from groundplan._errors import GroundplanError, MapError
+from groundplan._extras import needed
+from groundplan.maps import Map
+from groundplan.maps._canvas import Canvas
+from groundplan.maps._distant import Distant
+from groundplan.maps._read import read_or_leave
+from groundplan.maps._source import Bytes, Span
+from groundplan.maps._tally import Tally, summed, tally
+from groundplan.parameters import named
+from groundplan.stages import layout
+
+if TYPE_CHECKING:
+    from groundplan.survey import Survey
+
+R = TypeVar("R")
+
+#: Pixels of a band at the most, but for a row of blocks; rows at the least, and bands for each thread of a worker.
+PIXELS, ROWS, SHARES = 1 << 24, 128, 3
+
+#: How long a scheduler is waited for, seconds.
+TIMEOUT_S = 10
+
+#: What the state of four pixels is, by the byte that they are packed in.
+UNPACKED = (np.arange(256)[:, None] >> np.array([0, 2, 4, 6]) & 3).astype(np.uint8)
+
+
+def connect(address: str) -> Any:
+    """A client of the scheduler at an address.
+
+    Raises
+    ------
+    GroundplanError
+        ``extra.missing``; ``cluster.connect``.
+    """
+    distributed = needed("distributed", "dask")
+    try:
+        # A client that was half made over a wrong address would wait for its end.
+        distributed.comm.addressing.parse_host_port(distributed.comm.parse_address(address)[1])
+        return distributed.Client(address, timeout=TIMEOUT_S, set_as_default=False)
+    except (OSError, ValueError, TypeError) as fault:
+        said = f"no Dask scheduler answers at {address}: {' '.join(str(fault).split())}"
+        raise GroundplanError("cluster.connect", said, "dask scheduler says its address, as tcp://HOST:8786") from fault
+
+
+@dataclass(frozen=True)
+class Site:
+    """A map on a cluster: what it is, and where its rows are read.
+
+    Attributes
+    ----------
+    map : Map
+        With its pixels where they are in this process, else of their shape alone.
+    distant : Distant or None
+        The file that the workers read.
+    counts : (256,) int64 or None
+        How often each pixel value occurs, where the workers counted.
+    """
+
+    map: Map
+    distant: Distant | None = None
+    counts: npt.NDArray[np.int64] | None = None
+
+
+def open_map(path: str | os.PathLike[str], reading: dict[str, Any], client: Any) -> Site:
+    """A map's file, counted by the workers where they can read it by rows, else read here.
+
+    Raises
+    ------
+    MapError
+        As `groundplan.read`; ``cluster.path`` where a worker has no such file.
+    """
+    counted: list[Tally] = []
+
+    def count(far: Distant) -> Tally:
+        spans = cut(far.shape, far.block, client)
+        counted.append(summed(list(gather(client, count_rows, [(far, span) for span in spans]))))
+        return counted[0]
+
+    map, far = read_or_leave(path, reading, count)
+    return Site(map, far, counted[0].counts if counted else None)
+
+
+def survey_site(
+    site: Site,
+    client: Any,
+    parameters: dict[str, Any],
+    threads: int | None,
+    own: dict[str, Any],
+    *,
+    keep: bool = False,
+) -> tuple[Survey, Map]:
+    """The survey of a map, and the map as far as its pixels are here in the end.
+
+    Of a map that the workers read, what is here are the states of its pixels. Where each state is one value, as in most
+    maps, that is the map itself, and the survey keeps it; else each state is drawn in its commonest value.
+    """
+    from groundplan.survey import surveyed
+
+    map, far, values = site.map, site.distant, named(parameters)
+    block = 1 if far is None else far.block
+    spans = cut(map.pixels.shape, block, client)
+    reach = _core.reach(layout(replace(map, pixels=np.broadcast_to(np.uint8(0), (1, 1)))), values)
+
+    def pixels_of(span: Span) -> Any:
+        """Where a worker gets the rows from: the file, or a copy that is sent to it."""
+        return far if far is not None else client.scatter(np.ascontiguousarray(map.pixels[slice(*span)]))
+
+    meaning = map.values, map.states, map.resolution, map.origin
+    tasks = []
+    for span in spans:
+        held = max(span[0] - reach, 0), min(span[1] + reach, map.height)
+        tasks.append((pixels_of(held), held, span, map.height, meaning, values, far is not None))
+    found: list[dict[str, Any]] = []
+    exact = True
+    if far is None:
+        found = [part for part, _ in gather(client, look, tasks)]
+    else:
+        assert site.counts is not None
+        shown, exact = commonest(map.states, site.counts)
+        with Canvas(Path(map.image), *far.shape) as canvas:
+            parts = gather(client, look, tasks)
+            for span, (part, packed) in zip(spans, parts, strict=True):
+                found.append(part)
+                canvas.put(span[0], shown[unpacked(packed, (span[1] - span[0], map.width))])
+            map = replace(map, pixels=canvas.pixels())
+    # The lowest rows come first in gradients, the highest in maps.
+    gradients = {name: np.concatenate([part[name] for part in reversed(found)]) for name in found[0]}
+    grid = layout(map)
+    directions = own.get("directions") or _core.find_directions(grid, gradients, values)
+    lines = own.get("lines") or _core.find_lines(_core.find_radiograms(grid, gradients, directions, values), values)
+    sources = [(pixels_of(span), span, map.height, meaning, directions, lines) for span in spans]
+    faces = len(_core.subdivide(grid, directions, lines)["areas"])
+    sums = np.zeros((faces, 8), np.int64)
+    for which, rows in gather(client, add_faces, sources):
+        sums[which] += rows
+    parts_known = {"gradients": gradients, "directions": directions, "lines": lines, "sums": sums}
+    made = surveyed(map, parameters, threads, own, parts_known, keep=keep)
+    if not exact:
+        made.__dict__["_map"] = None  # its pixels are not the map's
+    return made, map
+
+
+def cut(shape: tuple[int, int], block: int, client: Any) -> list[Span]:
+    """Bands of rows, whole blocks each: from, to, from the top down."""
+    height, width = shape
+    threads = max(1, sum(client.nthreads().values()))
+    rows = min(max(ROWS, -(-height // (SHARES * threads))), max(1, PIXELS // width))
+    rows = -(-rows // block) * block
+    return [(top, min(top + rows, height)) for top in range(0, height, rows)]
+
+
+def gather(client: Any, task: Callable[..., R], given: list[tuple[Any, ...]]) -> Iterator[R]:
+    """What the workers make of each, in order; what is left is called off when one fails.
+
+    Raises
+    ------
+    GroundplanError
+        What a worker raised; ``cluster.failed`` for all that is not ours.
+    """
+    futures = [client.submit(task, *words, pure=False) for words in given]
+    try:
+        for future in futures:
+            made: R = future.result()
+            future.release()
+            yield made
+    except GroundplanError as fault:
+        if fault.code == "map.missing":
+            hint = "workers read the map themselves: its path has to be the same on their machines"
+            raise MapError("cluster.path", f"a worker has no such file: {fault}", hint) from fault
+        raise
+    except Exception as fault:  # of Dask, of the network, of another version of Groundplan over there
+        said = f"the cluster failed: {type(fault).__name__}: {' '.join(str(fault).split())}"
+        raise GroundplanError(
+            "cluster.failed", said, "its workers need groundplan and dask of these versions"
+        ) from fault
+    finally:
+        client.cancel([future for future in futures if not future.done()])
+
+
+def count_rows(far: Distant, span: Span) -> Tally:
+    """On a worker: counts over some rows."""
+    made = tally(far.rows(*span), span[0], far.shape[0])
+    return replace(made, rows=made.rows.copy())
+
+
+def look(
+    source: Distant | Bytes, held: Span, span: Span, height: int, meaning: Any, values: dict[str, Any], packs: bool
+) -> tuple[dict[str, Any], bytes]:
+    """On a worker: gradients of a band, of which more rows are held, and the states of its pixels."""
+    pixels = source.rows(*held) if isinstance(source, Distant) else source
+    grid = layout(Map(pixels, *meaning))
+    width = pixels.shape[1]
+    rows = height - span[1], height - span[0]
+    part = _core.find_gradients_in(grid, (height, height - held[1]), rows, (0, width), values, 1)
+    own = pixels[span[0] - held[0] : span[1] - held[0]]
+    return part, packed(meaning[1][own]) if packs else b""
+
+
+def add_faces(
+    source: Distant | Bytes,
+    span: Span,
+    height: int,
+    meaning: Any,
+    directions: dict[str, Any],
+    lines: dict[str, Any],
+) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """On a worker: what a band adds to the faces that it meets."""
+    pixels = source.rows(*span) if isinstance(source, Distant) else source
+    rows = height - span[1], height - span[0]
+    sums = _core.sum_faces(layout(Map(pixels, *meaning)), (height, rows[0]), rows, directions, lines, 1)
+    which = np.flatnonzero(sums.any(axis=1))
+    return which, sums[which]
+
+
+def packed(states: Bytes) -> bytes:
+    """States of pixels, four to a byte and compressed."""
+    flat = np.concatenate([states.ravel(), np.zeros(-states.size % 4, np.uint8)])
+    return zlib.compress(flat[0::4] | flat[1::4] << 2 | flat[2::4] << 4 | flat[3::4] << 6, 1)
+
+
+def unpacked(data: bytes, shape: tuple[int, int]) -> Bytes:
+    """The inverse of `packed`."""
+    states: Bytes = UNPACKED[np.frombuffer(zlib.decompress(data), np.uint8)].ravel()[: shape[0] * shape[1]]
+    return states.reshape(shape)
+
+
+def commonest(states: Bytes, counts: npt.NDArray[np.int64]) -> tuple[Bytes, bool]:
+    """The commonest pixel value of each state, and whether there is no other."""
+    there = [np.where(states == state, counts, -1) for state in range(3)]
+    exact = all((of > 0).sum() <= 1 for of in there)
+    return np.array([of.argmax() for of in there], np.uint8), exact
