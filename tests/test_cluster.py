@@ -29,7 +29,7 @@ FRAME: dict[str, Any] = {"resolution": RESOLUTION, "origin": (-1.0, 2.0, 0.3)}
 def cluster() -> Iterator[Any]:
     """Four worker processes."""
     with distributed.LocalCluster(
-        n_workers=4, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None
+        n_workers=4, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address="127.0.0.1:0"
     ) as made:
         yield made
 
@@ -207,6 +207,30 @@ def test_where_no_scheduler_answers_it_is_told(
         ran = call(capsys, "survey", path, "-o", tmp_path / "out", "--dask", address)
         assert ran.code != 0 and f"no Dask scheduler answers at {address}" in ran.err and "hint:" in ran.err
     assert not (tmp_path / "out").exists()
+
+
+def test_where_there_are_no_workers_it_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(_cluster, "TIMEOUT_S", 1)
+    path = write_zarr(tmp_path / "big.zarr", hall(), **FRAME)
+    with distributed.LocalCluster(n_workers=0, host="127.0.0.1", dashboard_address="127.0.0.1:0") as idle:
+        ran = call(capsys, "survey", path, "-o", tmp_path / "out", "--dask", idle.scheduler_address)
+    assert ran.code != 0 and "has no workers" in ran.err and "dask worker tcp://" in ran.err
+
+
+def test_what_is_no_client_is_refused(client: Any) -> None:
+    for other in ("tcp://127.0.0.1:8786", cluster):
+        with pytest.raises(groundplan.ParameterError, match="the client is a ") as caught:
+            groundplan.survey(hall(), resolution=RESOLUTION, client=other)
+        assert caught.value.code == "cluster.client"
+
+
+def test_a_worker_of_another_version_is_told(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("groundplan._cluster._core.version", lambda: "99.0")
+    with pytest.raises(GroundplanError, match=r"and 99\.0 is asked of it") as caught:
+        groundplan.survey(hall(), resolution=RESOLUTION, client=client)
+    assert caught.value.code == "cluster.version"
 
 
 def test_what_a_worker_cannot_read_is_told_as_one_process_tells_it(client: Any, tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from groundplan import _core
-from groundplan._errors import GroundplanError, MapError
+from groundplan._errors import GroundplanError, MapError, ParameterError
 from groundplan._extras import needed
 from groundplan.maps import Map
 from groundplan.maps._canvas import Canvas
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 R = TypeVar("R")
 
 #: Pixels of a band at the most, but for a row of blocks; rows at the least, and bands for each thread of a worker.
-PIXELS, ROWS, SHARES = 1 << 24, 128, 3
+PIXELS, ROWS, SHARES = 1 << 26, 128, 3
 
 #: How long a scheduler is waited for, seconds.
 TIMEOUT_S = 10
@@ -48,21 +48,41 @@ UNPACKED = (np.arange(256)[:, None] >> np.array([0, 2, 4, 6]) & 3).astype(np.uin
 
 
 def connect(address: str) -> Any:
-    """A client of the scheduler at an address.
+    """A client of the scheduler at an address, which has workers.
 
     Raises
     ------
     GroundplanError
-        ``extra.missing``; ``cluster.connect``.
+        ``extra.missing``; ``cluster.connect``; ``cluster.workers``.
     """
     distributed = needed("distributed", "dask")
     try:
         # A client that was half made over a wrong address would wait for its end.
         distributed.comm.addressing.parse_host_port(distributed.comm.parse_address(address)[1])
-        return distributed.Client(address, timeout=TIMEOUT_S, set_as_default=False)
+        client = distributed.Client(address, timeout=TIMEOUT_S, set_as_default=False)
     except (OSError, ValueError, TypeError) as fault:
         said = f"no Dask scheduler answers at {address}: {' '.join(str(fault).split())}"
         raise GroundplanError("cluster.connect", said, "dask scheduler says its address, as tcp://HOST:8786") from fault
+    try:
+        client.wait_for_workers(1, timeout=TIMEOUT_S)
+    except TimeoutError as fault:
+        client.close()
+        said = f"the Dask scheduler at {address} has no workers"
+        raise GroundplanError("cluster.workers", said, f"dask worker {address} starts one") from fault
+    return client
+
+
+def checked(client: Any) -> None:
+    """Refuse what is no client that can be waited for.
+
+    Raises
+    ------
+    ParameterError
+        ``cluster.client``.
+    """
+    if not hasattr(client, "submit") or not hasattr(client, "nthreads") or getattr(client, "asynchronous", False):
+        kind = "an asynchronous one" if hasattr(client, "submit") else f"a {type(client).__name__}"
+        raise ParameterError("cluster.client", f"the client is {kind}", "it takes a dask.distributed.Client")
 
 
 @dataclass(frozen=True)
@@ -119,6 +139,7 @@ def survey_site(
     """
     from groundplan.survey import surveyed
 
+    checked(client)
     map, far, values = site.map, site.distant, named(parameters)
     block = 1 if far is None else far.block
     spans = cut(map.pixels.shape, block, client)
@@ -147,7 +168,7 @@ def survey_site(
                 canvas.put(span[0], shown[unpacked(packed, (span[1] - span[0], map.width))])
             map = replace(map, pixels=canvas.pixels())
     # The lowest rows come first in gradients, the highest in maps.
-    gradients = {name: np.concatenate([part[name] for part in reversed(found)]) for name in found[0]}
+    gradients = {name: np.concatenate([part.pop(name) for part in reversed(found)]) for name in list(found[0])}
     grid = layout(map)
     directions = own.get("directions") or _core.find_directions(grid, gradients, values)
     lines = own.get("lines") or _core.find_lines(_core.find_radiograms(grid, gradients, directions, values), values)
@@ -178,9 +199,10 @@ def gather(client: Any, task: Callable[..., R], given: list[tuple[Any, ...]]) ->
     Raises
     ------
     GroundplanError
-        What a worker raised; ``cluster.failed`` for all that is not ours.
+        What a worker raised; ``cluster.version`` where its method is another, ``cluster.failed`` for all that is not
+        ours.
     """
-    futures = [client.submit(task, *words, pure=False) for words in given]
+    futures = [client.submit(there, _core.version(), task, *words, pure=False) for words in given]
     try:
         for future in futures:
             made: R = future.result()
@@ -198,6 +220,14 @@ def gather(client: Any, task: Callable[..., R], given: list[tuple[Any, ...]]) ->
         ) from fault
     finally:
         client.cancel([future for future in futures if not future.done()])
+
+
+def there(version: str, task: Callable[..., R], *words: Any) -> R:
+    """On a worker: a task, by the same method as here."""
+    if version != _core.version():
+        said = f"a worker has groundplan {_core.version()}, and {version} is asked of it"
+        raise GroundplanError("cluster.version", said, "the same version everywhere gives the same survey")
+    return task(*words)
 
 
 def count_rows(far: Distant, span: Span) -> Tally:

@@ -532,7 +532,7 @@ def survey(
     MapError
         An array that is no map.
     GroundplanError
-        ``cluster.path``, ``cluster.failed`` for what goes wrong on workers.
+        ``cluster.client``; ``cluster.path``, ``cluster.version``, ``cluster.failed`` for what goes wrong on workers.
     """
     stages = (("directions", Directions, directions), ("lines", Lines, lines))
     own = {name: taken(kind, name, value) for name, kind, value in stages if value is not None}
