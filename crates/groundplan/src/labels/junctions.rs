@@ -22,7 +22,7 @@ pub struct Meeting {
 }
 
 /// A corridor goes on beyond a junction when it does so for this long, metres.
-const ARM: f64 = 1.6;
+pub const ARM: f64 = 1.6;
 /// A corridor that ends this far short of another still meets it, metres, when the way between is free.
 const SHORT: f64 = 6.0;
 /// Junctions nearer than this are one, metres.

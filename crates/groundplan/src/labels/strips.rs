@@ -239,15 +239,27 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
     }
 }
 
-/// Where each corridor begins and ends, along: its walled part, and on to the middle of the junctions at its ends.
+/// Where each corridor begins and ends, along: its walled part, and the middle of the junction at each end that it has no
+/// arm beyond.
 fn extents(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<[f64; 2]> {
     let mut extents: Vec<[f64; 2]> = strips.iter().map(|strip| strip.along).collect();
-    for meeting in meetings {
-        for &corridor in &meeting.corridors {
-            let u = views[strips[corridor].direction].place(meeting.at)[0];
-            extents[corridor][0] = extents[corridor][0].min(u);
-            extents[corridor][1] = extents[corridor][1].max(u);
+    let all = || {
+        let each = |m: &Meeting, p: usize| (m.corridors[p], m.reach[p.min(1)], m.at);
+        meetings.iter().flat_map(move |m| (0..m.corridors.len()).map(move |p| each(m, p)))
+    };
+    let place = |n: usize, at: [f64; 2]| views[strips[n].direction].place(at)[0];
+    for (n, reach, at) in all() {
+        let (u, [low, high]) = (place(n, at), strips[n].along);
+        if low > u - reach - junctions::ARM {
+            extents[n][0] = u;
         }
+        if high < u + reach + junctions::ARM {
+            extents[n][1] = u;
+        }
+    }
+    for (n, _, at) in all() {
+        let u = place(n, at);
+        extents[n] = [extents[n][0].min(u), extents[n][1].max(u)];
     }
     extents
 }
