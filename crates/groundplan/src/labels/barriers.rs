@@ -30,6 +30,15 @@ pub fn across(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool>
     flags
 }
 
+/// The same of some columns, as they are among all.
+pub fn among(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
+    // What is thicker beyond the range is no wall within it.
+    let more = (THICK / view.cell).ceil() as usize + 1;
+    let wider = range.start.saturating_sub(more)..(range.end + more).min(view.size[0]);
+    let first = range.start - wider.start;
+    self::across(view, across, wider)[first..first + range.len()].to_vec()
+}
+
 /// Where a square of a share of the strip's width, which never turns back, gets no further along it: a wall askew to the
 /// strip bars no column for itself. Beyond each such column it begins anew.
 pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize> {
@@ -41,10 +50,13 @@ pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize>
     let mut free_for = vec![side; count];
     let mut reached = vec![true; count];
     let mut found = Vec::new();
+    let place = |n: usize| first + n as f64 * view.cell;
+    let barred: Vec<Vec<f64>> =
+        (0..count).map(|n| view.all_barred(range.clone(), place(n), place(n) + view.cell)).collect();
+    let from = range.start;
     for c in range {
-        for (n, columns) in free_for.iter_mut().enumerate() {
-            let v = first + n as f64 * view.cell;
-            *columns = if view.barred(c, v, v + view.cell) == 0.0 { *columns + 1 } else { 0 };
+        for (columns, barred) in free_for.iter_mut().zip(&barred) {
+            *columns = if barred[c - from] == 0.0 { *columns + 1 } else { 0 };
         }
         let free: Vec<bool> = free_for.iter().map(|columns| *columns >= side).collect();
         let mut next = vec![false; count];

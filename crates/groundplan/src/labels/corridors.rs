@@ -129,9 +129,14 @@ fn along(evidence: &Evidence, views: &[Turned], view: &Turned) -> Vec<Strip> {
     candidates.sort_by(|a, b| b.strip.score.total_cmp(&a.strip.score));
     let mut kept: Vec<Strip> = Vec::new();
     for candidate in candidates {
-        let columns = family.columns(candidate.sides);
-        for range in family.left(&candidate.strip, &kept) {
-            kept.extend(family.strips(&columns, range, candidate.strip.across));
+        let (first, last) = family.range(&candidate.strip);
+        let left = family.left(&candidate.strip, &kept);
+        if !left.is_empty() {
+            let columns = family.columns(candidate.sides, first..last);
+            for range in left {
+                let own = &columns[range.start - first..range.end - first];
+                kept.extend(family.strips(own, range.start, candidate.strip.across));
+            }
         }
     }
     kept.sort_by(|a, b| a.middle().total_cmp(&b.middle()).then(a.along[0].total_cmp(&b.along[0])));
@@ -187,7 +192,7 @@ impl<'a> Family<'a> {
                 }
                 if width >= self.parameters.labels_min_width {
                     let sides = [low, high];
-                    let strips = self.strips(&self.columns(sides), 0..self.view.size[0], across);
+                    let strips = self.strips(&self.columns(sides, 0..self.view.size[0]), 0, across);
                     found.extend(strips.into_iter().map(|strip| Candidate { strip, sides }));
                 }
             }
@@ -195,8 +200,8 @@ impl<'a> Family<'a> {
         found
     }
 
-    /// What every column between two lines holds.
-    fn columns(&self, [low, high]: [usize; 2]) -> Vec<Column> {
+    /// What some columns between two lines hold.
+    fn columns(&self, [low, high]: [usize; 2], range: std::ops::Range<usize>) -> Vec<Column> {
         let across = [self.offsets[low], self.offsets[high]];
         let width = across[1] - across[0];
         let inner = INNER.min(0.25 * width);
@@ -209,19 +214,21 @@ impl<'a> Family<'a> {
         let beyond = [[across[0] - BESIDE.1, across[0] - BESIDE.0], [across[1] + BESIDE.0, across[1] + BESIDE.1]];
         let view = self.view;
         let within = [across[0] + margin, across[1] - margin];
-        let (blocked, closed) = (view.all_blocked(within[0], within[1]), view.all_closed(within[0], within[1]));
-        let beyond = beyond.map(|[low, high]| view.all_blocked(low, high));
-        let holds = |n: usize, c: usize| sides[n].walls[c] || beyond[n][c] > BEYOND;
-        let barriers = barriers::across(view, across, 0..view.size[0]);
-        (0..view.size[0])
+        let blocked = view.some_blocked(range.clone(), within[0], within[1]);
+        let closed = view.some_closed(range.clone(), within[0], within[1]);
+        let beyond = beyond.map(|[low, high]| view.some_blocked(range.clone(), low, high));
+        let first = range.start;
+        let holds = |n: usize, c: usize| sides[n].walls[c] || beyond[n][c - first] > BEYOND;
+        let barriers = barriers::among(view, across, range.clone());
+        range
             .map(|c| Column {
-                blocked: blocked[c],
-                closed: closed[c] || barriers[c],
+                blocked: blocked[c - first],
+                closed: closed[c - first] || barriers[c - first],
                 parted: parts.iter().any(|part| part.faces[c]),
                 walled: holds(0, c) && holds(1, c),
                 near: sides.iter().any(|side| side.near[c]),
                 faces: sides.map(|side| side.faces[c]),
-                held: [0, 1].map(|n| beyond[n][c] > BEYOND),
+                held: [0, 1].map(|n| beyond[n][c - first] > BEYOND),
             })
             .collect()
     }
@@ -237,10 +244,13 @@ impl<'a> Family<'a> {
         let (from, to) = self.range(strip);
         let mut left = vec![(from, to)];
         for rival in kept {
+            let cut = self.range(rival);
+            if cut.1 <= from || to <= cut.0 {
+                continue;
+            }
             let shared = strip.across[1].min(rival.across[1]) - strip.across[0].max(rival.across[0]);
             let beside = shared.abs() < INNER && !self.parts(strip, rival);
             if shared > RIVAL * strip.width().min(rival.width()) || beside {
-                let cut = self.range(rival);
                 let pieces = left.into_iter().flat_map(|(a, b)| [(a, b.min(cut.0)), (a.max(cut.1), b)]);
                 left = pieces.filter(|(a, b)| a < b).collect();
             }
@@ -261,17 +271,17 @@ impl<'a> Family<'a> {
         from < to && structure as f64 >= DENSE * (to - from) as f64
     }
 
-    /// The corridors among a strip's columns: the pieces in which what speaks for a corridor outweighs what speaks
+    /// The corridors among a strip's columns, of which the first is given: the pieces in which what speaks for a corridor outweighs what speaks
     /// against it, each as long as that holds.
-    fn strips(&self, columns: &[Column], range: std::ops::Range<usize>, across: [f64; 2]) -> Vec<Strip> {
-        let scores: Vec<f64> = columns[range.clone()].iter().map(|c| c.score()).collect();
-        let pieces = best_pieces(&scores).into_iter().map(|(from, to)| (range.start + from, range.start + to));
+    fn strips(&self, columns: &[Column], first: usize, across: [f64; 2]) -> Vec<Strip> {
+        let scores: Vec<f64> = columns.iter().map(|c| c.score()).collect();
+        let pieces = best_pieces(&scores).into_iter();
         let view = self.view;
         let strip = |(from, to): (usize, usize)| Strip {
             direction: view.direction,
-            along: [view.along(from), view.along(to)],
+            along: [view.along(first + from), view.along(first + to)],
             across,
-            score: scores[from - range.start..to - range.start].iter().sum::<f64>() * view.cell,
+            score: scores[from..to].iter().sum::<f64>() * view.cell,
         };
         pieces.filter(|&(from, to)| self.is_corridor(&columns[from..to], across[1] - across[0])).map(strip).collect()
     }

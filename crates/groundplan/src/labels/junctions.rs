@@ -1,10 +1,12 @@
 //! II-E: junctions, where corridors meet; their type is the number of ways out.
 
 use super::corridors::Strip;
+use super::near::Near;
 use super::turned::Turned;
 use super::{JunctionKind, barriers};
 use crate::grid::{angle_between, turned};
 use crate::subdivision::distance;
+use std::collections::BTreeMap;
 
 /// Where corridors meet.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +27,8 @@ pub struct Meeting {
 pub const ARM: f64 = 1.6;
 /// A corridor that ends this far short of another still meets it, metres, when the way between is free.
 const SHORT: f64 = 6.0;
+/// Corridors whose directions have an angle of a smaller sine do not meet.
+const LEAST_SINE: f64 = 0.1;
 /// Junctions nearer than this are one, metres.
 const SAME: f64 = 1.5;
 /// Ways out whose headings differ by less are one, and such that differ by so little from opposite are in line.
@@ -34,17 +38,31 @@ const SQUARE_DEG: f64 = 55.0;
 
 /// Junctions of the corridors, in the order of the corridors.
 pub fn find(views: &[Turned], strips: &[Strip]) -> Vec<Meeting> {
+    // Where two may meet both their centre lines lead, each from as far as it may.
+    let widest = strips.iter().map(Strip::width).fold(0.0, f64::max);
+    let near = SHORT + widest / 2.0 / LEAST_SINE;
+    let lines: Vec<_> = strips
+        .iter()
+        .map(|s| views[s.direction].rectangle([s.along[0] - near, s.along[1] + near], [s.middle(); 2]))
+        .collect();
+    let beside = Near::polygons(&lines);
     let mut found: Vec<Meeting> = Vec::new();
+    let mut places: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
     for a in 0..strips.len() {
-        for b in a + 1..strips.len() {
+        for b in beside.beside(&lines[a]).into_iter().map(|b| b as usize).filter(|b| *b > a) {
             if strips[a].direction == strips[b].direction {
                 continue;
             }
             let Some(meeting) = meet(views, strips, [a, b]) else { continue };
             // A passage that goes on where an aisle ends is another corridor, but the junction is one.
-            match found.iter_mut().find(|other| distance(other.at, meeting.at) <= SAME) {
-                Some(other) => other.join(meeting),
-                None => found.push(meeting),
+            let [x, y] = meeting.at.map(|c| (c / SAME).floor() as i64);
+            let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
+            let known = around.filter_map(|place| places.get(&place)).flatten();
+            if let Some(&other) = known.filter(|n| distance(found[**n].at, meeting.at) <= SAME).min() {
+                found[other].join(meeting);
+            } else {
+                places.entry([x, y]).or_default().push(found.len());
+                found.push(meeting);
             }
         }
     }
@@ -55,6 +73,15 @@ pub fn find(views: &[Turned], strips: &[Strip]) -> Vec<Meeting> {
         }
         None => false,
     });
+    found
+}
+
+/// For each of so many corridors the junctions that it leads to, in their order.
+pub fn of_each(meetings: &[Meeting], corridors: usize) -> Vec<Vec<usize>> {
+    let mut found = vec![Vec::new(); corridors];
+    for (n, meeting) in meetings.iter().enumerate() {
+        meeting.corridors.iter().for_each(|&corridor| found[corridor].push(n));
+    }
     found
 }
 
@@ -94,7 +121,7 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
     // The centre lines' crossing: n1.p = m1, n2.p = m2.
     let [(s1, c1), (s2, c2)] = [first, second].map(|v| (libm::sin(v.angle), libm::cos(v.angle)));
     let sine = s2 * c1 - s1 * c2;
-    if sine.abs() < 0.1 {
+    if sine.abs() < LEAST_SINE {
         return None;
     }
     let (m1, m2) = (one.middle(), two.middle());
@@ -151,10 +178,11 @@ const ACROSS: f64 = 0.5;
 /// runs into the unknown, or opens into a hall, it has no end. Each with the corridor and which of its ends it is.
 pub fn ends(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<(usize, usize, f64)> {
     let mut found = Vec::new();
+    let of_each = of_each(meetings, strips.len());
     for (n, strip) in strips.iter().enumerate() {
         let view = &views[strip.direction];
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
-            let met = meetings.iter().any(|meeting| {
+            let met = of_each[n].iter().map(|&m| &meetings[m]).any(|meeting| {
                 let place = meeting.corridors.iter().position(|c| *c == n);
                 place.is_some_and(|p| {
                     let u = view.place(meeting.at)[0];

@@ -23,7 +23,7 @@ impl Near {
         made
     }
 
-    /// Convex polygons, numbered as they come; [`Near::at`] asks for them.
+    /// Convex polygons, numbered as they come; [`Near::at`] and [`Near::beside`] ask for them.
     pub fn polygons(polygons: &[Vec<[f64; 2]>]) -> Self {
         let mut made = Self::over(polygons.iter().flatten().copied(), polygons.len());
         let mut entries = Vec::new();
@@ -47,6 +47,14 @@ impl Near {
     pub fn within(&self, polygon: &[[f64; 2]]) -> Vec<u32> {
         let mut found = Vec::new();
         self.buckets(polygon, |bucket| found.extend_from_slice(self.of(bucket)));
+        found
+    }
+
+    /// The polygons that may touch another, in the order of their numbers.
+    pub fn beside(&self, polygon: &[[f64; 2]]) -> Vec<u32> {
+        let mut found = self.within(polygon);
+        found.sort_unstable();
+        found.dedup();
         found
     }
 

@@ -5,6 +5,7 @@
 
 use super::Evidence;
 use super::corridors::Strip;
+use super::near::Near;
 use super::turned::Turned;
 
 /// A piece of a row.
@@ -36,6 +37,7 @@ pub const SAME: f64 = 0.3;
 
 /// The rows between the corridors and at the outer sides of them, the longest first.
 pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
+    let crossings = Crossings::new(views, strips, extents);
     let mut rows = between(views, strips, extents);
     rows.retain(|row| taken(&views[row.direction], row) >= TAKEN);
     for (n, strip) in strips.iter().enumerate() {
@@ -58,7 +60,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[
                 let across = if side == 1 { [own, own + depth] } else { [own - depth, own] };
                 let row = |along| Row { direction: strip.direction, along, across, between: None };
                 let is_row = |row: &Row| taken(view, row) >= TAKEN_OUTSIDE && seen(view, line, row) >= SEEN_OUTSIDE;
-                let pieces = uncrossed(views, strips, extents, n, across, open.clone());
+                let pieces = crossings.uncrossed(n, across, open.clone());
                 let found: Vec<Row> = pieces.into_iter().map(row).filter(is_row).collect();
                 for row in &found {
                     open = without(open, row.along[0], row.along[1]);
@@ -72,6 +74,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[
 
 /// What lies between neighbouring corridors, and may be a row, be it taken or not.
 pub fn between(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
+    let crossings = Crossings::new(views, strips, extents);
     let mut rows = Vec::new();
     for (n, strip) in strips.iter().enumerate() {
         let mut open = vec![(extents[n][0], extents[n][1])];
@@ -81,7 +84,7 @@ pub fn between(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<
             open = without(open, from, to);
             if depth >= DEPTH.0 {
                 let across = [strip.across[1], strips[m].across[0]];
-                let pieces = uncrossed(views, strips, extents, n, across, shared).into_iter();
+                let pieces = crossings.uncrossed(n, across, shared).into_iter();
                 rows.extend(pieces.map(|along| Row {
                     direction: strip.direction,
                     along,
@@ -109,21 +112,44 @@ fn behind(strips: &[Strip], n: usize, side: usize) -> Vec<(usize, f64)> {
     found
 }
 
-/// Pieces of a row beside a corridor that no other corridor crosses, each long enough.
-fn uncrossed(
-    views: &[Turned],
-    strips: &[Strip],
-    extents: &[[f64; 2]],
-    n: usize,
-    across: [f64; 2],
-    mut pieces: Vec<(f64, f64)>,
-) -> Vec<[f64; 2]> {
-    let direction = strips[n].direction;
-    for (crossing, extent) in strips.iter().zip(extents).filter(|(s, _)| s.direction != direction) {
-        let [from, to] = crossed(&views[direction], &views[crossing.direction], crossing, *extent, across);
-        pieces = without(pieces, from, to);
+/// What crosses rows: corridors of other directions.
+struct Crossings<'a> {
+    views: &'a [Turned],
+    strips: &'a [Strip],
+    extents: &'a [[f64; 2]],
+    near: Near,
+    /// How far along a row a crossing one may reach beyond where its other side crosses it.
+    reach: f64,
+}
+
+impl<'a> Crossings<'a> {
+    fn new(views: &'a [Turned], strips: &'a [Strip], extents: &'a [[f64; 2]]) -> Self {
+        let polygons: Vec<_> =
+            strips.iter().zip(extents).map(|(s, extent)| views[s.direction].rectangle(*extent, s.across)).collect();
+        let sines = views.iter().flat_map(|one| views.iter().map(|other| libm::sin(one.angle - other.angle).abs()));
+        let sine = sines.filter(|sine| *sine > 0.0).fold(1.0, f64::min);
+        let widest = strips.iter().map(Strip::width).fold(0.0, f64::max);
+        Self { views, strips, extents, near: Near::polygons(&polygons), reach: widest / sine }
     }
-    pieces.into_iter().filter(|(from, to)| to - from >= SHORTEST).map(|(from, to)| [from, to]).collect()
+
+    /// Pieces of a row beside a corridor that no other corridor crosses, each long enough.
+    fn uncrossed(&self, n: usize, across: [f64; 2], mut pieces: Vec<(f64, f64)>) -> Vec<[f64; 2]> {
+        let direction = self.strips[n].direction;
+        let view = &self.views[direction];
+        let middle = f64::midpoint(across[0], across[1]);
+        let ends = [pieces.first().map_or(0.0, |piece| piece.0), pieces.last().map_or(0.0, |piece| piece.1)];
+        let row = view.rectangle([ends[0] - self.reach, ends[1] + self.reach], [middle; 2]);
+        for other in self.near.beside(&row).into_iter().map(|other| other as usize) {
+            let crossing = &self.strips[other];
+            if crossing.direction != direction
+                && let Some([from, to]) =
+                    crossed(view, &self.views[crossing.direction], crossing, self.extents[other], across)
+            {
+                pieces = without(pieces, from, to);
+            }
+        }
+        pieces.into_iter().filter(|(from, to)| to - from >= SHORTEST).map(|(from, to)| [from, to]).collect()
+    }
 }
 
 /// True when a strip lies between two much longer corridors that are no further apart than the faces of a rack.
@@ -150,13 +176,20 @@ fn apart(views: &[Turned], mut rows: Vec<Row>) -> Vec<Row> {
         let [u, v] = views[row.direction].place(point);
         (row.along[0]..=row.along[1]).contains(&u) && (row.across[0]..=row.across[1]).contains(&v)
     };
-    let mut kept: Vec<Row> = Vec::new();
-    for row in rows {
-        if kept.iter().all(|other| !holds(other, middle(&row)) && !holds(&row, middle(other))) {
-            kept.push(row);
-        }
+    let polygons: Vec<_> = rows.iter().map(|row| views[row.direction].rectangle(row.along, row.across)).collect();
+    let middles: Vec<_> = (0..).zip(rows.iter().map(middle)).collect();
+    let (holding, held) = (Near::polygons(&polygons), Near::points(&middles));
+    let mut kept = vec![false; rows.len()];
+    for (n, row) in rows.iter().enumerate() {
+        let own = middles[n].1;
+        let is_kept = |other: &&u32| kept[**other as usize];
+        let within = holding.at(own).iter().filter(is_kept).any(|&other| holds(&rows[other as usize], own));
+        let around = held.within(&polygons[n]);
+        kept[n] = !within && !around.iter().filter(is_kept).any(|&other| holds(row, middles[other as usize].1));
     }
-    kept
+    let mut flags = kept.into_iter();
+    rows.retain(|_| flags.next().unwrap_or(false));
+    rows
 }
 
 /// Share of a row's length on which structure lies on one of its view's lines.
@@ -174,7 +207,7 @@ fn without(pieces: Vec<(f64, f64)>, from: f64, to: f64) -> Vec<(f64, f64)> {
 
 /// From where to where, along `view`, a corridor of another direction crosses the middle of a row; nothing when it
 /// ends before.
-fn crossed(view: &Turned, other: &Turned, crossing: &Strip, extent: [f64; 2], across: [f64; 2]) -> [f64; 2] {
+fn crossed(view: &Turned, other: &Turned, crossing: &Strip, extent: [f64; 2], across: [f64; 2]) -> Option<[f64; 2]> {
     let middle = f64::midpoint(across[0], across[1]);
     let turn = other.angle - view.angle;
     let (sin, cos) = (libm::sin(turn), libm::cos(turn));
@@ -185,7 +218,7 @@ fn crossed(view: &Turned, other: &Turned, crossing: &Strip, extent: [f64; 2], ac
     };
     let ends = crossing.across.map(place);
     let within = ends.iter().any(|(s, _)| (extent[0]..=extent[1]).contains(s));
-    if within { [ends[0].1.min(ends[1].1), ends[0].1.max(ends[1].1)] } else { [0.0, 0.0] }
+    within.then(|| [ends[0].1.min(ends[1].1), ends[0].1.max(ends[1].1)])
 }
 
 /// Share of a row that is not free.

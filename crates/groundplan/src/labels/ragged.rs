@@ -53,7 +53,7 @@ pub fn find(view: &Turned, parameters: &Parameters, known: &[Strip]) -> Vec<Stri
         let extent = view.size[1] as f64 * view.cell;
         for n in 0..((extent - width) / step).max(0.0) as usize {
             let low = view.start[1] + n as f64 * step;
-            candidates.extend(Candidate::new(view, [low, low + width]).ways(&[]));
+            candidates.extend(Candidate::new(view, [low, low + width]).ways());
         }
         width *= WIDER;
     }
@@ -65,7 +65,8 @@ pub fn find(view: &Turned, parameters: &Parameters, known: &[Strip]) -> Vec<Stri
             found.push(candidate);
             continue;
         }
-        let ways = Candidate::new(view, candidate.across).ways(&rivals);
+        let whole = Candidate::new(view, candidate.across);
+        let ways = whole.ways_in(whole.around(&candidate), &rivals);
         found.extend(
             ways.into_iter().filter(|way| way.along[0] < candidate.along[1] && candidate.along[0] < way.along[1]),
         );
@@ -121,11 +122,11 @@ impl<'a> Candidate<'a> {
     }
 
     /// The stretches of so many columns at least none of which is closed or a rival's.
-    fn open(&self, least: usize, rivals: &[Range<usize>]) -> Vec<Range<usize>> {
-        let count = self.view.size[0];
+    fn open(&self, within: Range<usize>, least: usize, rivals: &[Range<usize>]) -> Vec<Range<usize>> {
+        let count = within.end;
         let is_closed = |c: &usize| self.blocked.at(*c) >= self.closed || rivals.iter().any(|rival| rival.contains(c));
         let mut stretches = Vec::new();
-        let mut from = 0;
+        let mut from = within.start;
         while from + least <= count {
             // From its far end, so that most columns are never asked.
             if let Some(closed) = (from..from + least).rev().find(is_closed) {
@@ -153,15 +154,28 @@ impl<'a> Candidate<'a> {
         Column { clear, held, score }
     }
 
-    /// The ways along it that rivals leave.
-    fn ways(&self, rivals: &[&Strip]) -> Vec<Strip> {
+    /// The columns around a way along it up to where it is closed: beyond nothing bears on what lies there.
+    fn around(&self, way: &Strip) -> Range<usize> {
+        let is_closed = |c: &usize| self.blocked.at(*c) >= self.closed;
+        let [first, last] = way.along.map(|u| self.view.column(u));
+        let from = (0..first).rev().find(is_closed).map_or(0, |c| c + 1);
+        from..(last..self.view.size[0]).find(is_closed).unwrap_or(self.view.size[0])
+    }
+
+    /// The ways along it.
+    fn ways(&self) -> Vec<Strip> {
+        self.ways_in(0..self.view.size[0], &[])
+    }
+
+    /// The ways along it that rivals leave, among some columns.
+    fn ways_in(&self, within: Range<usize>, rivals: &[&Strip]) -> Vec<Strip> {
         let view = self.view;
         let width = self.across[1] - self.across[0];
         let least = ((SHORTEST.max(LONG * width) / view.cell) as usize).max(1);
         let rivals: Vec<Range<usize>> =
             rivals.iter().map(|rival| view.column(rival.along[0])..view.column(rival.along[1]) + 1).collect();
         let mut ways = Vec::new();
-        for stretch in self.open(least, &rivals) {
+        for stretch in self.open(within, least, &rivals) {
             let columns: Vec<Column> = stretch.clone().map(|c| self.column(c)).collect();
             let clear = columns.iter().filter(|column| column.clear).count();
             if (clear as f64) < LEAST_CLEAR * least as f64 {

@@ -216,8 +216,9 @@ fn rack_labels(evidence: &Evidence, views: &[Turned], rows: &[Row], squares: &Sq
 fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeting>) {
     loop {
         let meetings = junctions::find(views, &strips);
+        let met = junctions::of_each(&meetings, strips.len());
         let leads = |n: usize| {
-            let met = meetings.iter().filter(|m| m.corridors.contains(&n));
+            let met = met[n].iter().map(|&m| &meetings[m]);
             let reach = met.clone().map(|m| m.reach[usize::from(m.corridors[0] != n)]).sum::<f64>();
             let beyond = strips[n].length() - reach;
             match met.count() {
@@ -285,7 +286,7 @@ fn square(views: &[Turned], strips: &[Strip], meeting: &Meeting) -> Vec<[f64; 2]
 
 /// A rectangle in a direction's own places, as a polygon in the map frame.
 fn rectangle(view: &Turned, along: [f64; 2], across: [f64; 2]) -> Vec<[f64; 2]> {
-    [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[u, v]| view.to_map([along[u], across[v]]).map(tidy)).to_vec()
+    view.rectangle(along, across).into_iter().map(|corner| corner.map(tidy)).collect()
 }
 
 /// Faces that no label of a kind has yet.

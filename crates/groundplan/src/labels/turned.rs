@@ -149,6 +149,11 @@ impl Turned {
         [u * cos - v * sin, u * sin + v * cos]
     }
 
+    /// A rectangle of places, counter-clockwise, as a polygon in the map frame.
+    pub fn rectangle(&self, along: [f64; 2], across: [f64; 2]) -> Vec<[f64; 2]> {
+        [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[u, v]| self.to_map([along[u], across[v]])).to_vec()
+    }
+
     /// The column that holds place `u`, the first or last when it lies outside.
     pub fn column(&self, u: f64) -> usize {
         (((u - self.start[0]) / self.cell).max(0.0) as usize).min(self.size[0] - 1)
@@ -207,10 +212,10 @@ impl Turned {
         self.shares(What::Occupied, columns, low, high)
     }
 
-    /// [`Turned::is_closed`] of all columns.
-    pub fn all_closed(&self, low: f64, high: f64) -> Vec<bool> {
-        let barred = self.all_barred(0..self.size[0], low, high);
-        self.all_blocked(low, high)
+    /// [`Turned::is_closed`] of a range of columns.
+    pub fn some_closed(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<bool> {
+        let barred = self.all_barred(columns.clone(), low, high);
+        self.some_blocked(columns, low, high)
             .into_iter()
             .zip(barred)
             .map(|(blocked, barred)| is_closed(blocked, barred))
