@@ -9,7 +9,7 @@ from zoo import OPEN, PADDED, RESOLUTION, TURNS, ZOO
 
 import groundplan
 from groundplan import Directions, Lines, Subdivision
-from groundplan.stages import NONE
+from groundplan._results import NONE
 
 EVERY = [(name, turn) for name in ZOO for turn in TURNS]
 

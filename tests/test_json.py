@@ -13,7 +13,7 @@ import zoo
 from zoo import ZOO
 
 from groundplan import FormatError, Survey
-from groundplan.survey import READING
+from groundplan._tree import READING
 
 
 @pytest.mark.parametrize("name", ZOO)
@@ -90,6 +90,8 @@ def test_a_survey_differs_when_a_part_does() -> None:
         ({"map": {}}, "survey.content"),
         ({"evidence": None}, "survey.content"),
         ({"labels": [{"kind": "pillar", "at": [float("nan"), 0.0]}]}, "survey.content"),
+        ({"labels": [{"kind": "region", "at": [1.0, 0.0]}]}, "survey.content"),
+        ({"labels": [{"kind": "door", "width": 0.9}]}, "survey.content"),
         ({"labels": [{"kind": "pillar", "at": [1.0, 0.0], "width": float("inf")}]}, "survey.content"),
     ],
 )

@@ -13,7 +13,7 @@ from zoo import RESOLUTION, TURNS, ZOO
 
 import groundplan
 from groundplan import Directions, Lines, ParameterError, Survey
-from groundplan.stages import NONE
+from groundplan._results import NONE
 
 EVERY = [(name, turn) for name in ZOO for turn in TURNS]
 

@@ -11,7 +11,7 @@ import zoo
 from zoo import OPEN, PADDED, RESOLUTION, TURNS, ZOO, Canvas
 
 import groundplan
-from groundplan.stages import NONE
+from groundplan._results import NONE
 
 #: Maps with edges so near to a threshold that a hundredth of a degree decides.
 CLOSE = frozenset({"pillars", "triangle_grid", "turned_warehouse", "half_explored", "diagonal_only"})

@@ -16,9 +16,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from groundplan._errors import FormatError, GroundplanError, MapError, ParameterError
     from groundplan._queries import Route
-    from groundplan.maps import Map, MapWarning, from_array, read
-    from groundplan.parameters import table as parameters
-    from groundplan.stages import (
+    from groundplan._results import (
         Adjacency,
         Directions,
         Gradients,
@@ -28,6 +26,10 @@ if TYPE_CHECKING:
         Response,
         Subdivision,
         Walls,
+    )
+    from groundplan.maps import Map, MapWarning, from_array, read
+    from groundplan.parameters import table as parameters
+    from groundplan.stages import (
         find_adjacency,
         find_directions,
         find_gradients,

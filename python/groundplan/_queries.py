@@ -13,11 +13,13 @@ import numpy.typing as npt
 
 from groundplan import _core
 from groundplan._errors import FormatError, ParameterError
+from groundplan._results import Floats, Ids, SignedIds, Stage, record
 from groundplan.maps import Map
-from groundplan.stages import Floats, Ids, SignedIds, Stage, layout, needs, record
+from groundplan.stages import layout, needs
 
 if TYPE_CHECKING:
-    from groundplan.survey import Label, Survey
+    from groundplan._results import Label
+    from groundplan.survey import Survey
 
 #: A point (x, y) in metres, a label's name, or the id of a face.
 Place: TypeAlias = "Sequence[float] | Floats | str | int"

@@ -7,7 +7,6 @@ import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
@@ -16,64 +15,34 @@ import numpy.typing as npt
 
 from groundplan import _core
 from groundplan._errors import FormatError, MapError, ParameterError
-from groundplan._extras import needed
 from groundplan._files import unreadable, write_text
-from groundplan._format import FORMAT, VERSION, check_format
+from groundplan._format import check_format
 from groundplan._queries import Place, Queries, Route
-from groundplan._shapes import outline
-from groundplan.maps import Map, MapWarning, from_array
-from groundplan.maps.map_server import shown
-from groundplan.parameters import named, resolve
-from groundplan.stages import (
+from groundplan._results import (
+    KINDS,
     Adjacency,
     Directions,
+    Label,
     Lines,
+    MapInfo,
     Occupancy,
     Radiogram,
     SignedIds,
     Stage,
     Subdivision,
     Walls,
-    cores,
-    layout,
-    made,
-    run,
-    taken,
 )
+from groundplan._tree import dump, from_tree, to_tree
+from groundplan.maps import Map, MapWarning, from_array
+from groundplan.maps.map_server import shown
+from groundplan.parameters import named, resolve
+from groundplan.stages import cores, layout, made, run, taken
 
 if TYPE_CHECKING:
     import networkx
 
 #: What is taken for many coordinates and not for one.
 _MANY = (np.ndarray, list, tuple)
-
-STATES = ("free", "occupied", "unknown")
-
-#: The kinds of labels.
-KINDS = ("corridor", "junction", "rack", "region", "door", "pillar")
-
-#: What a label of a kind must have besides its kind.
-NEEDED = {"corridor": ("polygon", "axis", "width"), "junction": ("type", "at")}
-
-#: What can be given for reading a map.
-READING = (
-    *("dialect", "unknown", "negate", "mode", "occupied_thresh", "free_thresh", "resolution", "origin"),
-    *("topic", "stamp", "band", "min_hits"),
-)
-
-#: A label: ``kind`` and the keys that the survey's format gives that kind. Plain values, as in the JSON.
-Label = dict[str, Any]
-
-
-@dataclass(frozen=True)
-class MapInfo:
-    """The surveyed map's block: image name, size in pixels, metres per pixel, origin (m, m, rad)."""
-
-    image: str
-    width: int
-    height: int
-    resolution: float
-    origin: tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -268,61 +237,7 @@ class Survey(Stage):
 
     def to_dict(self) -> dict[str, Any]:
         """The survey as the format has it: plain lists and numbers."""
-        cut, dual = self.subdivision, self.adjacency
-        faces = [ragged(part, cut.face_offsets) for part in (cut.face_vertices, cut.face_edges)]
-        lines = [None if line < 0 else line for line in cut.edge_lines.tolist()]
-        sides = [[None if f < 0 else f for f in pair] for pair in cut.edge_faces.tolist()]
-        kinds = ["freestanding" if free else "separating" for free in self.walls.freestanding.tolist()]
-        source = {} if self.source is None else {"source": {"file": self.source, "reading": self.reading}}
-        return {
-            "format": FORMAT,
-            "version": VERSION,
-            **source,
-            "map": {f.name: getattr(self.map, f.name) for f in fields(self.map)} | {"origin": list(self.map.origin)},
-            "parameters": self.parameters,
-            "directions": rows(angle=self.directions.angles, weight=self.directions.weights),
-            "lines": rows(
-                direction=self.lines.directions,
-                offset=self.lines.offsets,
-                amplitude=self.lines.amplitudes,
-                width=self.lines.widths,
-            ),
-            "vertices": cut.vertices.tolist(),
-            "edges": rows(
-                vertices=cut.edge_vertices,
-                line=lines,
-                faces=sides,
-                occupancy=self.occupancy.edges,
-                runs=ragged(self.occupancy.runs, self.occupancy.run_offsets),
-                disparity=self.walls.disparity,
-                cogent=self.walls.cogent,
-            ),
-            "faces": rows(
-                vertices=faces[0],
-                edges=faces[1],
-                centre=cut.centres,
-                area=cut.areas,
-                occupancy=self.occupancy.faces,
-                unknown=self.occupancy.unknown,
-                free=self.occupancy.free,
-                pixels=self.occupancy.pixels,
-                state=[STATES[state] for state in self.occupancy.states.tolist()],
-            ),
-            "links": rows(faces=dual.faces, edge=dual.edges, connected=dual.connected),
-            "walls": rows(points=self.walls.points.reshape(-1, 2, 2), line=self.walls.lines, kind=kinds),
-            "labels": self.labels,
-            "patterns": self.patterns,
-            "warnings": [{"code": w.code, "message": w.message} for w in self.warnings],
-            "evidence": {
-                "histogram": self.directions.histogram.tolist(),
-                "explained": self.directions.explained,
-                "min_amplitude": self.lines.min_amplitude,
-                "radiograms": [
-                    {"direction": r.direction, "start": r.start, "step": r.step, "values": r.values.tolist()}
-                    for r in self.radiograms
-                ],
-            },
-        }
+        return to_tree(self)
 
     def to_json(self) -> str:
         """The survey as JSON, a line for each part; the same survey gives the same bytes."""
@@ -349,7 +264,7 @@ class Survey(Stage):
             raise FormatError("survey.json", f"the survey is not JSON: {fault}") from fault
         check_format(tree if isinstance(tree, dict) else {})
         try:
-            return cls._from_tree(tree)
+            return cls(**from_tree(tree))
         except (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError) as fault:
             raise FormatError("survey.content", f"the survey is not whole: {type(fault).__name__} {fault}") from fault
 
@@ -367,77 +282,6 @@ class Survey(Stage):
         except OSError as fault:
             raise unreadable("survey.read", path, fault) from fault
 
-    @classmethod
-    def _from_tree(cls, tree: dict[str, Any]) -> Survey:
-        source = tree.get("source")
-        frame, evidence, faces, edges = tree["map"], tree["evidence"], tree["faces"], tree["edges"]
-        x, y, yaw = (float(value) for value in frame["origin"])
-        width, height = int(frame["width"]), int(frame["height"])
-        info = MapInfo(str(frame["image"]), width, height, float(frame["resolution"]), (x, y, yaw))
-        sides, runs = ([len(entry[part]) for entry in of] for of, part in ((faces, "vertices"), (edges, "runs")))
-        return cls(
-            map=info,
-            parameters=tree["parameters"],
-            directions=Directions(
-                column(tree["directions"], "angle", np.float64),
-                column(tree["directions"], "weight", np.float64),
-                np.array(evidence["histogram"], dtype=np.float64),
-                float(evidence["explained"]),
-            ),
-            radiograms=[
-                Radiogram(r["direction"], r["start"], r["step"], np.array(r["values"], dtype=np.float64))
-                for r in evidence["radiograms"]
-            ],
-            lines=Lines(
-                column(tree["lines"], "direction", np.uint32),
-                column(tree["lines"], "offset", np.float64),
-                column(tree["lines"], "amplitude", np.float64),
-                column(tree["lines"], "width", np.float64),
-                float(evidence["min_amplitude"]),
-            ),
-            subdivision=Subdivision(
-                vertices=np.array(tree["vertices"], dtype=np.float64).reshape(-1, 2),
-                edge_vertices=column(edges, "vertices", np.uint32).reshape(-1, 2),
-                edge_lines=np.array([-1 if e["line"] is None else e["line"] for e in edges], dtype=np.int32),
-                edge_faces=np.array(
-                    [[-1 if f is None else f for f in e["faces"]] for e in edges], dtype=np.int32
-                ).reshape(-1, 2),
-                face_vertices=np.array([v for face in faces for v in face["vertices"]], dtype=np.uint32),
-                face_edges=np.array([e for face in faces for e in face["edges"]], dtype=np.uint32),
-                face_offsets=np.cumsum([0, *sides], dtype=np.uint32),
-                centres=column(faces, "centre", np.float64).reshape(-1, 2),
-                areas=column(faces, "area", np.float64),
-                map_area=info.width * info.height * info.resolution**2,
-            ),
-            occupancy=Occupancy(
-                faces=column(faces, "occupancy", np.float64),
-                unknown=column(faces, "unknown", np.float64),
-                free=column(faces, "free", np.float64),
-                pixels=column(faces, "pixels", np.uint64),
-                states=np.array([STATES.index(face["state"]) for face in faces], dtype=np.uint8),
-                edges=column(edges, "occupancy", np.float64),
-                runs=np.array([run for edge in edges for run in edge["runs"]], dtype=np.float64).reshape(-1, 2),
-                run_offsets=np.cumsum([0, *runs], dtype=np.uint32),
-            ),
-            walls=Walls(
-                cogent=column(edges, "cogent", np.bool_),
-                disparity=column(edges, "disparity", np.float64),
-                points=column(tree["walls"], "points", np.float64).reshape(-1, 2),
-                lines=column(tree["walls"], "line", np.uint32),
-                freestanding=np.array([w["kind"] == "freestanding" for w in tree["walls"]], dtype=np.bool_),
-            ),
-            adjacency=Adjacency(
-                faces=column(tree["links"], "faces", np.uint32).reshape(-1, 2),
-                edges=column(tree["links"], "edge", np.uint32),
-                connected=column(tree["links"], "connected", np.bool_),
-            ),
-            labels=[checked(label) for label in tree["labels"]],
-            patterns=[checked_pattern(pattern) for pattern in tree.get("patterns", [])],
-            warnings=[MapWarning(w["code"], w["message"]) for w in tree["warnings"]],
-            source=None if source is None else str(source["file"]),
-            reading={} if source is None else checked_reading(source.get("reading", {})),
-        )
-
     def export(self, path: str | os.PathLike[str], format: str | None = None, **options: Any) -> list[Path]:
         """Write the survey in the format of another program, such as ``dxf``; see `groundplan.export.export`."""
         from groundplan.export import export
@@ -450,24 +294,9 @@ class Survey(Stage):
         A node has its ``centre``, ``area``, ``occupancy`` and ``state``, an edge the ``edge`` that it crosses and
         whether it is ``connected``. Two faces meet in one edge at most.
         """
-        nx = needed("networkx", "graph")
-        graph = nx.Graph()
-        for face, (centre, area) in enumerate(
-            zip(self.subdivision.centres.tolist(), self.subdivision.areas, strict=True)
-        ):
-            graph.add_node(
-                face,
-                centre=tuple(centre),
-                area=float(area),
-                occupancy=float(self.occupancy.faces[face]),
-                state=STATES[self.occupancy.states[face]],
-            )
-        dual = self.adjacency
-        for (a, b), edge, connected in zip(
-            dual.faces.tolist(), dual.edges.tolist(), dual.connected.tolist(), strict=True
-        ):
-            graph.add_edge(a, b, edge=edge, connected=connected)
-        return graph
+        from groundplan._interop import to_networkx
+
+        return to_networkx(self)
 
     def to_shapely(self) -> dict[str, npt.NDArray[np.object_]]:
         """Geometries in the map frame, in the order of their ids. Needs shapely.
@@ -475,18 +304,9 @@ class Survey(Stage):
         ``faces`` and ``labels`` are polygons, ``edges`` and ``walls`` line strings, ``vertices`` points. A label
         without a polygon, such as a door, is None.
         """
-        shapely = needed("shapely", "geometry")
-        cut = self.subdivision
-        rings = shapely.linearrings(
-            cut.vertices[cut.face_vertices], indices=np.repeat(np.arange(len(cut.areas)), np.diff(cut.face_offsets))
-        )
-        return {
-            "faces": shapely.polygons(rings),
-            "edges": shapely.linestrings(cut.vertices[cut.edge_vertices]),
-            "vertices": shapely.points(cut.vertices),
-            "walls": shapely.linestrings(self.walls.points.reshape(-1, 2, 2)),
-            "labels": np.array([outline(label) for label in self.labels], dtype=np.object_),
-        }
+        from groundplan._interop import to_shapely
+
+        return to_shapely(self)
 
 
 def survey(
@@ -596,76 +416,3 @@ def surveyed(
 def is_array(value: object) -> bool:
     """Whether NumPy takes it for an array, and not for a single thing."""
     return hasattr(value, "__array__") or (isinstance(value, Sequence) and not isinstance(value, str | bytes))
-
-
-def rows(**columns: Any) -> list[dict[str, Any]]:
-    """Columns as a list of records."""
-    lists = [column.tolist() if isinstance(column, np.ndarray) else column for column in columns.values()]
-    return [dict(zip(columns, values, strict=True)) for values in zip(*lists, strict=True)]
-
-
-def ragged(values: npt.NDArray[Any], offsets: npt.NDArray[Any]) -> list[Any]:
-    """Lists of different lengths from their values and offsets."""
-    flat, ends = values.tolist(), offsets.tolist()
-    return [flat[start:end] for start, end in pairwise(ends)]
-
-
-def column(records: list[dict[str, Any]], name: str, kind: npt.DTypeLike) -> npt.NDArray[Any]:
-    """One key of a list of records as an array."""
-    return np.array([entry[name] for entry in records], dtype=kind)
-
-
-def checked(label: Any) -> Label:
-    """A label from a file, held to what its readers count on.
-
-    Raises
-    ------
-    KeyError, TypeError, ValueError
-        A part is missing, of another type or of another shape.
-    """
-    for key in ("kind", *NEEDED.get(label["kind"], ())):
-        label[key]
-    for key, value in label.items():
-        if key in ("kind", "type", "use", "name") and not isinstance(value, str):
-            raise TypeError(f"the {key} of a label is {value!r}")
-        if key in ("at", "polygon", "axis"):
-            points = np.asarray(value)
-            if points.dtype.kind not in "if" or points.shape[-1:] != (2,) or points.ndim != 1 + (key != "at"):
-                raise ValueError(f"the {key} of a {label['kind']} is not made of points")
-            if not np.isfinite(points).all():
-                raise ValueError(f"the {key} of a {label['kind']} is not finite")
-        if key in ("width", "area") and not np.isfinite(float(value)):
-            raise ValueError(f"the {key} of a {label['kind']} is {value}")
-    return dict(label)
-
-
-def checked_pattern(pattern: dict[str, Any]) -> Label:
-    """A pattern from a file, held to what its readers count on.
-
-    Raises
-    ------
-    KeyError, TypeError, ValueError
-        A part is missing, of another type or of another shape.
-    """
-    if not isinstance(pattern["kind"], str):
-        raise TypeError(f"the kind of a pattern is {pattern['kind']!r}")
-    float(pattern["angle"])
-    for key in ("pitch", "phase"):
-        along, across = pattern[key]
-        for value in (along, across):
-            if value is not None:
-                float(value)
-    return pattern | {"labels": [int(label) for label in pattern["labels"]]}
-
-
-def checked_reading(reading: dict[str, Any]) -> dict[str, Any]:
-    """What a file says of how the map was read, held to the names that there are."""
-    strange = [name for name in reading if name not in READING]
-    if strange:
-        raise ValueError(f"there is no {strange[0]!r} in reading a map")
-    return dict(reading)
-
-
-def dump(value: Any) -> str:
-    """Compact JSON, without what JSON cannot say."""
-    return json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False)

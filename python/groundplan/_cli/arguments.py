@@ -248,6 +248,6 @@ def add_reading(own: argparse.ArgumentParser, *, frame: bool) -> None:
 
 def reading(arguments: argparse.Namespace) -> dict[str, Any]:
     """What the flags of `add_reading` say, as `groundplan.read` takes it: only those that were given."""
-    from groundplan.survey import READING
+    from groundplan._tree import READING
 
     return {name: value for name in READING if (value := getattr(arguments, name, None)) is not None}

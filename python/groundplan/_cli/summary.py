@@ -51,7 +51,7 @@ def _degrees(angle: float) -> float:
 
 
 def _faces(survey: Survey) -> Rows:
-    from groundplan.survey import STATES
+    from groundplan._results import STATES
 
     states = Counter(STATES[state] for state in survey.occupancy.states.tolist())
     kinds = ", ".join(f"{states[state]} {state}" for state in STATES if states[state])

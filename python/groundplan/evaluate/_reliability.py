@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from groundplan._results import KINDS
 from groundplan.evaluate._patterns import true_rack
 from groundplan.evaluate._scores import matched, optional, points
-from groundplan.survey import KINDS
 
 #: Upper ends of the bins.
 BINS = (0.25, 0.5, 0.75, 0.9, 1.0)

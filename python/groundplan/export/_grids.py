@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from groundplan._files import whole
-from groundplan.survey import MapInfo
+from groundplan._results import MapInfo
 
 Bytes = npt.NDArray[np.uint8]
 

@@ -14,7 +14,8 @@ from groundplan._shapes import outline
 from groundplan.export._text import one_line, slug, unique
 
 if TYPE_CHECKING:
-    from groundplan.survey import Label, Survey
+    from groundplan._results import Label
+    from groundplan.survey import Survey
 
 #: The letters of what the survey gives no name; those that it names have A, C (corridors), S (racks), R (regions).
 LETTERS = {"junction": "J", "door": "D", "pillar": "P"}

@@ -12,11 +12,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.transforms import Affine2D
 
+from groundplan._results import Radiogram
 from groundplan.figures import _style as ink
 from groundplan.figures._labelled import counted, degrees, name_of
 from groundplan.figures._panels import LEFT, RIGHT, blank, fitted, header, map_panel, place, scale_bar
 from groundplan.figures._underlay import Underlay
-from groundplan.stages import Radiogram
 from groundplan.survey import Survey
 
 Floats = npt.NDArray[np.float64]

@@ -13,13 +13,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
+from groundplan._results import NONE, STATES
 from groundplan.figures import _style as ink
 from groundplan.figures._labelled import counted, name_of
 from groundplan.figures._labels import dot
 from groundplan.figures._panels import blank, foot, header, map_sheet, place
 from groundplan.figures._underlay import Extent, Underlay
-from groundplan.stages import NONE
-from groundplan.survey import STATES, Survey
+from groundplan.survey import Survey
 
 Floats = npt.NDArray[np.float64]
 

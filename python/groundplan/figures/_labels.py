@@ -18,10 +18,11 @@ from matplotlib.path import Path
 from matplotlib.textpath import TextPath
 from matplotlib.transforms import IdentityTransform
 
+from groundplan._results import Label
 from groundplan._shapes import readable
 from groundplan.figures import _style as ink
 from groundplan.figures._names import AxesNames, Names, meetings, widest_gap
-from groundplan.survey import Label, Survey
+from groundplan.survey import Survey
 
 Points = npt.NDArray[np.float64]
 

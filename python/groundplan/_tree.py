@@ -1,0 +1,255 @@
+"""The survey as a tree of plain lists and numbers, as docs/survey.md has it, and back."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import fields
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from groundplan._format import FORMAT, VERSION
+from groundplan._results import (
+    STATES,
+    Adjacency,
+    Directions,
+    Label,
+    Lines,
+    MapInfo,
+    Occupancy,
+    Radiogram,
+    Subdivision,
+    Walls,
+)
+from groundplan.maps import MapWarning
+
+if TYPE_CHECKING:
+    from groundplan.survey import Survey
+
+#: What a label of a kind must have besides its kind.
+NEEDED = {
+    "corridor": ("polygon", "axis", "width"),
+    "junction": ("type", "at"),
+    "rack": ("polygon", "axis"),
+    "region": ("polygon",),
+    "door": ("at",),
+    "pillar": ("at",),
+}
+
+#: What can be given for reading a map.
+READING = (
+    *("dialect", "unknown", "negate", "mode", "occupied_thresh", "free_thresh", "resolution", "origin"),
+    *("topic", "stamp", "band", "min_hits"),
+)
+
+
+def to_tree(survey: Survey) -> dict[str, Any]:
+    """The survey as the format has it: plain lists and numbers."""
+    cut, dual = survey.subdivision, survey.adjacency
+    faces = [ragged(part, cut.face_offsets) for part in (cut.face_vertices, cut.face_edges)]
+    lines = [None if line < 0 else line for line in cut.edge_lines.tolist()]
+    sides = [[None if f < 0 else f for f in pair] for pair in cut.edge_faces.tolist()]
+    kinds = ["freestanding" if free else "separating" for free in survey.walls.freestanding.tolist()]
+    source = {} if survey.source is None else {"source": {"file": survey.source, "reading": survey.reading}}
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        **source,
+        "map": {f.name: getattr(survey.map, f.name) for f in fields(survey.map)} | {"origin": list(survey.map.origin)},
+        "parameters": survey.parameters,
+        "directions": rows(angle=survey.directions.angles, weight=survey.directions.weights),
+        "lines": rows(
+            direction=survey.lines.directions,
+            offset=survey.lines.offsets,
+            amplitude=survey.lines.amplitudes,
+            width=survey.lines.widths,
+        ),
+        "vertices": cut.vertices.tolist(),
+        "edges": rows(
+            vertices=cut.edge_vertices,
+            line=lines,
+            faces=sides,
+            occupancy=survey.occupancy.edges,
+            runs=ragged(survey.occupancy.runs, survey.occupancy.run_offsets),
+            disparity=survey.walls.disparity,
+            cogent=survey.walls.cogent,
+        ),
+        "faces": rows(
+            vertices=faces[0],
+            edges=faces[1],
+            centre=cut.centres,
+            area=cut.areas,
+            occupancy=survey.occupancy.faces,
+            unknown=survey.occupancy.unknown,
+            free=survey.occupancy.free,
+            pixels=survey.occupancy.pixels,
+            state=[STATES[state] for state in survey.occupancy.states.tolist()],
+        ),
+        "links": rows(faces=dual.faces, edge=dual.edges, connected=dual.connected),
+        "walls": rows(points=survey.walls.points.reshape(-1, 2, 2), line=survey.walls.lines, kind=kinds),
+        "labels": survey.labels,
+        "patterns": survey.patterns,
+        "warnings": [{"code": w.code, "message": w.message} for w in survey.warnings],
+        "evidence": {
+            "histogram": survey.directions.histogram.tolist(),
+            "explained": survey.directions.explained,
+            "min_amplitude": survey.lines.min_amplitude,
+            "radiograms": [
+                {"direction": r.direction, "start": r.start, "step": r.step, "values": r.values.tolist()}
+                for r in survey.radiograms
+            ],
+        },
+    }
+
+
+def from_tree(tree: dict[str, Any]) -> dict[str, Any]:
+    """A survey's fields, by name.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError
+        A part is missing, of another type or of another shape.
+    """
+    source = tree.get("source")
+    frame, evidence, faces, edges = tree["map"], tree["evidence"], tree["faces"], tree["edges"]
+    x, y, yaw = (float(value) for value in frame["origin"])
+    width, height = int(frame["width"]), int(frame["height"])
+    info = MapInfo(str(frame["image"]), width, height, float(frame["resolution"]), (x, y, yaw))
+    sides, runs = ([len(entry[part]) for entry in of] for of, part in ((faces, "vertices"), (edges, "runs")))
+    return {
+        "map": info,
+        "parameters": tree["parameters"],
+        "directions": Directions(
+            column(tree["directions"], "angle", np.float64),
+            column(tree["directions"], "weight", np.float64),
+            np.array(evidence["histogram"], dtype=np.float64),
+            float(evidence["explained"]),
+        ),
+        "radiograms": [
+            Radiogram(r["direction"], r["start"], r["step"], np.array(r["values"], dtype=np.float64))
+            for r in evidence["radiograms"]
+        ],
+        "lines": Lines(
+            column(tree["lines"], "direction", np.uint32),
+            column(tree["lines"], "offset", np.float64),
+            column(tree["lines"], "amplitude", np.float64),
+            column(tree["lines"], "width", np.float64),
+            float(evidence["min_amplitude"]),
+        ),
+        "subdivision": Subdivision(
+            vertices=np.array(tree["vertices"], dtype=np.float64).reshape(-1, 2),
+            edge_vertices=column(edges, "vertices", np.uint32).reshape(-1, 2),
+            edge_lines=np.array([-1 if e["line"] is None else e["line"] for e in edges], dtype=np.int32),
+            edge_faces=np.array([[-1 if f is None else f for f in e["faces"]] for e in edges], dtype=np.int32).reshape(
+                -1, 2
+            ),
+            face_vertices=np.array([v for face in faces for v in face["vertices"]], dtype=np.uint32),
+            face_edges=np.array([e for face in faces for e in face["edges"]], dtype=np.uint32),
+            face_offsets=np.cumsum([0, *sides], dtype=np.uint32),
+            centres=column(faces, "centre", np.float64).reshape(-1, 2),
+            areas=column(faces, "area", np.float64),
+            map_area=info.width * info.height * info.resolution**2,
+        ),
+        "occupancy": Occupancy(
+            faces=column(faces, "occupancy", np.float64),
+            unknown=column(faces, "unknown", np.float64),
+            free=column(faces, "free", np.float64),
+            pixels=column(faces, "pixels", np.uint64),
+            states=np.array([STATES.index(face["state"]) for face in faces], dtype=np.uint8),
+            edges=column(edges, "occupancy", np.float64),
+            runs=np.array([run for edge in edges for run in edge["runs"]], dtype=np.float64).reshape(-1, 2),
+            run_offsets=np.cumsum([0, *runs], dtype=np.uint32),
+        ),
+        "walls": Walls(
+            cogent=column(edges, "cogent", np.bool_),
+            disparity=column(edges, "disparity", np.float64),
+            points=column(tree["walls"], "points", np.float64).reshape(-1, 2),
+            lines=column(tree["walls"], "line", np.uint32),
+            freestanding=np.array([w["kind"] == "freestanding" for w in tree["walls"]], dtype=np.bool_),
+        ),
+        "adjacency": Adjacency(
+            faces=column(tree["links"], "faces", np.uint32).reshape(-1, 2),
+            edges=column(tree["links"], "edge", np.uint32),
+            connected=column(tree["links"], "connected", np.bool_),
+        ),
+        "labels": [checked(label) for label in tree["labels"]],
+        "patterns": [checked_pattern(pattern) for pattern in tree.get("patterns", [])],
+        "warnings": [MapWarning(w["code"], w["message"]) for w in tree["warnings"]],
+        "source": None if source is None else str(source["file"]),
+        "reading": {} if source is None else checked_reading(source.get("reading", {})),
+    }
+
+
+def rows(**columns: Any) -> list[dict[str, Any]]:
+    """Columns as a list of records."""
+    lists = [column.tolist() if isinstance(column, np.ndarray) else column for column in columns.values()]
+    return [dict(zip(columns, values, strict=True)) for values in zip(*lists, strict=True)]
+
+
+def ragged(values: npt.NDArray[Any], offsets: npt.NDArray[Any]) -> list[Any]:
+    """Lists of different lengths from their values and offsets."""
+    flat, ends = values.tolist(), offsets.tolist()
+    return [flat[start:end] for start, end in pairwise(ends)]
+
+
+def column(records: list[dict[str, Any]], name: str, kind: npt.DTypeLike) -> npt.NDArray[Any]:
+    """One key of a list of records as an array."""
+    return np.array([entry[name] for entry in records], dtype=kind)
+
+
+def checked(label: Any) -> Label:
+    """A label from a file, held to what its readers count on.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        A part is missing, of another type or of another shape.
+    """
+    for key in ("kind", *NEEDED.get(label["kind"], ())):
+        label[key]
+    for key, value in label.items():
+        if key in ("kind", "type", "use", "name") and not isinstance(value, str):
+            raise TypeError(f"the {key} of a label is {value!r}")
+        if key in ("at", "polygon", "axis"):
+            points = np.asarray(value)
+            if points.dtype.kind not in "if" or points.shape[-1:] != (2,) or points.ndim != 1 + (key != "at"):
+                raise ValueError(f"the {key} of a {label['kind']} is not made of points")
+            if not np.isfinite(points).all():
+                raise ValueError(f"the {key} of a {label['kind']} is not finite")
+        if key in ("width", "area") and not np.isfinite(float(value)):
+            raise ValueError(f"the {key} of a {label['kind']} is {value}")
+    return dict(label)
+
+
+def checked_pattern(pattern: dict[str, Any]) -> Label:
+    """A pattern from a file, held to what its readers count on.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        A part is missing, of another type or of another shape.
+    """
+    if not isinstance(pattern["kind"], str):
+        raise TypeError(f"the kind of a pattern is {pattern['kind']!r}")
+    float(pattern["angle"])
+    for key in ("pitch", "phase"):
+        along, across = pattern[key]
+        for value in (along, across):
+            if value is not None:
+                float(value)
+    return pattern | {"labels": [int(label) for label in pattern["labels"]]}
+
+
+def checked_reading(reading: dict[str, Any]) -> dict[str, Any]:
+    """What a file says of how the map was read, held to the names that there are."""
+    strange = [name for name in reading if name not in READING]
+    if strange:
+        raise ValueError(f"there is no {strange[0]!r} in reading a map")
+    return dict(reading)
+
+
+def dump(value: Any) -> str:
+    """Compact JSON, without what JSON cannot say."""
+    return json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
