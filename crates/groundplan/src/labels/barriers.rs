@@ -10,6 +10,8 @@ const BARRED: f64 = 0.55;
 const THICK: f64 = 0.8;
 /// And leaves free no more than a door, metres.
 const DOOR: f64 = 2.5;
+/// A wall with a door in it bars more than this share of what lies beside the strip, on both sides.
+const BESIDE: f64 = 0.7;
 /// What is barred within so much of the strip's sides is the sides, metres.
 const MARGIN: f64 = 0.1;
 
@@ -20,7 +22,17 @@ const GETS_THROUGH: f64 = 0.35;
 pub fn across(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
     let (low, high) = (across[0] + MARGIN, across[1] - MARGIN);
     let is_door = |barred: f64| barred > BARRED && (1.0 - barred) * (high - low) <= DOOR;
-    let mut flags: Vec<bool> = view.all_barred(range, low, high).into_iter().map(is_door).collect();
+    thin(view, view.all_barred(range, low, high).into_iter().map(is_door).collect())
+}
+
+/// The columns in which such a wall stands on both sides of a strip, which leads through a door in it.
+pub fn doors(view: &Turned, sides: [[f64; 2]; 2], range: Range<usize>) -> Vec<bool> {
+    let [one, two] = sides.map(|[low, high]| view.all_barred(range.clone(), low, high));
+    thin(view, one.into_iter().zip(two).map(|(one, two)| one.min(two) > BESIDE).collect())
+}
+
+/// Flags without runs that are thicker than a wall.
+fn thin(view: &Turned, mut flags: Vec<bool>) -> Vec<bool> {
     let longest = (THICK / view.cell).ceil() as usize;
     for (from, to) in runs(&flags, true) {
         if to - from > longest {

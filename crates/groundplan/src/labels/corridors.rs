@@ -99,7 +99,7 @@ const ASKEW: f64 = 0.5;
 pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
     let found = map_each(views.len(), evidence.threads, |n| {
         let known = along(evidence, views, &views[n]);
-        let ragged = ragged::find(&views[n], evidence.parameters, &known);
+        let ragged = ragged::find(views, &views[n], evidence.parameters, &known);
         (known, ragged)
     });
     let (known, ragged): (Vec<_>, Vec<_>) = found.into_iter().unzip();
@@ -143,6 +143,16 @@ fn along(evidence: &Evidence, views: &[Turned], view: &Turned) -> Vec<Strip> {
     kept
 }
 
+/// Between the lines of posts of the rows that cross a direction, metres.
+pub fn pitches(views: &[Turned], view: &Turned) -> Vec<f64> {
+    let others = views.iter().filter(|other| other.direction != view.direction);
+    let across = others.filter_map(|other| {
+        let sine = libm::sin(other.angle - view.angle).abs();
+        other.pitch.map(|pitch| pitch * sine)
+    });
+    across.collect()
+}
+
 /// The lines of one direction as sides of strips.
 struct Family<'a> {
     view: &'a Turned,
@@ -163,15 +173,11 @@ struct Candidate {
 
 impl<'a> Family<'a> {
     fn new(evidence: &Evidence<'a>, views: &[Turned], view: &'a Turned) -> Self {
-        let pitches = views.iter().filter(|other| other.direction != view.direction).filter_map(|other| {
-            let sine = libm::sin(other.angle - view.angle).abs();
-            other.pitch.map(|pitch| pitch * sine)
-        });
         let racked = views.iter().any(|view| view.pitch.is_some());
         // Where the bays are known, one post may be missing.
         let bay = view.pitch.map_or(BAY, |pitch| BAY.max(MISSING * pitch));
         Self {
-            pitches: pitches.collect(),
+            pitches: pitches(views, view),
             racked,
             view,
             parameters: evidence.parameters,
@@ -434,7 +440,7 @@ pub fn best_pieces<T: Copy + Default + PartialOrd + AddAssign>(scores: &[T]) -> 
 }
 
 /// Fills gaps of up to `longest` between set flags.
-fn close(flags: &mut [bool], longest: usize) {
+pub fn close(flags: &mut [bool], longest: usize) {
     let gaps = runs(flags, false);
     let len = flags.len();
     for (from, to) in gaps {

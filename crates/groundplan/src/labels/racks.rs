@@ -32,6 +32,8 @@ const TAKEN_OUTSIDE: f64 = 0.5;
 const SEEN_OUTSIDE: f64 = 0.5;
 /// The corridors along a rack are so many times as long as a gap in it.
 const LONGER: f64 = 1.5;
+/// A place has racks when it has so many, and so many metres of them for a metre of corridor.
+const PLACE: (usize, f64) = (3, 0.22);
 /// Sides nearer than this are the same, metres.
 pub const SAME: f64 = 0.3;
 
@@ -162,6 +164,14 @@ pub fn is_within_row(strips: &[Strip], n: usize) -> bool {
     let below = strips.iter().filter(beside).map(|s| s.across[1]).filter(|v| *v <= own.across[0] + SAME);
     let above = strips.iter().filter(beside).map(|s| s.across[0]).filter(|v| *v >= own.across[1] - SAME);
     above.fold(f64::INFINITY, f64::min) - below.fold(f64::NEG_INFINITY, f64::max) <= DEPTH.1
+}
+
+/// True where rows are racks: in an office, what lies between two corridors are rooms. With where each corridor begins
+/// and ends, along.
+pub fn are_here(rows: &[Row], corridors: &[[f64; 2]]) -> bool {
+    let length = |ends: &[f64; 2]| ends[1] - ends[0];
+    let racks: f64 = rows.iter().map(|row| length(&row.along)).sum();
+    rows.len() >= PLACE.0 && racks >= PLACE.1 * corridors.iter().map(length).sum::<f64>()
 }
 
 /// The longest of rows that overlap.

@@ -1,10 +1,11 @@
 //! Corridors whose sides are no lines: goods at every depth, or a wall that the map bends.
 //!
 //! A strip is asked column by column for its clear extent. Where that is all of the strip, and ends on both sides
-//! within a share of its width beyond, the column speaks for a way along it, wherever in there the side may stand.
+//! within a share of its width beyond, the column speaks for a way along it, wherever in there the side may stand. A
+//! long way that nothing narrows needs no more of a side than machines or pallets in a row, with gaps between them.
 
 use super::barriers;
-use super::corridors::{Strip, best_pieces};
+use super::corridors::{self, Strip, best_pieces, close};
 use super::turned::{Shares, Turned};
 use crate::parameters::Parameters;
 use std::ops::Range;
@@ -12,7 +13,7 @@ use std::ops::Range;
 /// Widths are tried in such steps, and places across in such shares of the width.
 const WIDER: f64 = 1.25;
 const STEP: f64 = 0.125;
-/// The narrowest, metres: what is narrower has its sides nearer than goods are apart.
+/// The narrowest with deep sides, metres: what is narrower has its sides nearer than goods are apart.
 const NARROWEST: f64 = 1.2;
 /// The widest is so much of the widest corridor: with what its sides leave it is as wide.
 const WIDEST: f64 = 0.75;
@@ -23,19 +24,25 @@ const HELD: f64 = 0.3;
 /// A column is clear up to this share, and in the way from that one on.
 const CLEAR: f64 = 0.1;
 const CLUTTERED: f64 = 0.35;
-/// A way is at least so many times as long as wide, and so long, metres: less is a room.
-const LONG: f64 = 4.2;
-const SHORTEST: f64 = 7.0;
+/// Gaps up to this long in a thin side are no gaps, metres.
+const GAP: f64 = 1.4;
+/// A way is at least so long, metres, and so many times as long as wide: less is a room. The same with thin sides.
+const LONG: (f64, f64) = (7.0, 4.2);
+const VERY_LONG: (f64, f64) = (10.0, 5.0);
 /// Least shares of its columns that are clear, that hold on each side and on both, and on which something seen stands
 /// there.
 const LEAST_CLEAR: f64 = 0.75;
 const LEAST_HELD: f64 = 0.5;
 const LEAST_BOTH: f64 = 0.45;
 const LEAST_SEEN: f64 = 0.3;
+/// Up to so many pitches of the rows that it crosses it may lie over empty bays, from row to row: so much holds on both
+/// sides then.
+const BAY: f64 = 1.17;
+const LEAST_BOTH_BAY: f64 = 0.8;
 /// A way that shares more than this of its width with a known one is none.
 const SHARED: f64 = 0.25;
 /// What a column says for a way, or against it: it is clear between two sides; it is narrowed; it has one side; it has
-/// none; something stands in the way.
+/// none; something stands in the way, or narrows one with thin sides.
 const FULL: i64 = 10;
 const NARROWED: i64 = 2;
 const ONE_SIDED: i64 = 1;
@@ -44,29 +51,56 @@ const BLOCKED: i64 = 20;
 /// No way goes on through what closes it: a column of which so much is not free.
 const IMPASSABLE: f64 = 0.7;
 
+/// What holds a side.
+#[derive(Clone, Copy, PartialEq)]
+enum Held {
+    /// Much of what lies beyond the strip's border is not free.
+    Deep,
+    /// Something stands there, now and then.
+    Thin,
+}
+
+impl Held {
+    /// The shortest way of a width with such sides, metres.
+    fn shortest(self, width: f64) -> f64 {
+        let (shortest, long) = if self == Self::Thin { VERY_LONG } else { LONG };
+        shortest.max(long * width)
+    }
+}
+
 /// The ways along one direction beside those that are known, the best first.
-pub fn find(view: &Turned, parameters: &Parameters, known: &[Strip]) -> Vec<Strip> {
-    let mut candidates: Vec<Strip> = Vec::new();
-    let mut width = NARROWEST.max(parameters.labels_min_width);
+pub fn find(views: &[Turned], view: &Turned, parameters: &Parameters, known: &[Strip]) -> Vec<Strip> {
+    let bay = corridors::pitches(views, view).into_iter().fold(0.0, |widest, pitch| f64::max(widest, BAY * pitch));
+    let seen = Seen::new(view);
+    let mut candidates: Vec<(Strip, Held)> = Vec::new();
+    let mut width = parameters.labels_min_width;
     while width <= WIDEST * parameters.labels_max_width {
         let step = (STEP * width).max(view.cell);
         let extent = view.size[1] as f64 * view.cell;
+        let deep = (width >= NARROWEST).then_some(Held::Deep);
         for n in 0..((extent - width) / step).max(0.0) as usize {
             let low = view.start[1] + n as f64 * step;
-            candidates.extend(Candidate::new(view, [low, low + width]).ways());
+            let across = [low, low + width];
+            if beyond(across).into_iter().any(|side| seen.between(side) < LEAST_SEEN * LONG.0 / view.cell) {
+                continue;
+            }
+            let candidate = Candidate::new(view, across, bay);
+            for by in deep.into_iter().chain([Held::Thin]) {
+                candidates.extend(candidate.ways(by).into_iter().map(|way| (way, by)));
+            }
         }
         width *= WIDER;
     }
-    candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+    candidates.sort_by(|a, b| b.0.score.total_cmp(&a.0.score));
     let mut found: Vec<Strip> = Vec::new();
-    for candidate in candidates {
+    for (candidate, by) in candidates {
         let rivals: Vec<&Strip> = known.iter().chain(&found).filter(|other| is_beside(&candidate, other)).collect();
         if rivals.is_empty() {
             found.push(candidate);
             continue;
         }
-        let whole = Candidate::new(view, candidate.across);
-        let ways = whole.ways_in(whole.around(&candidate), &rivals);
+        let whole = Candidate::new(view, candidate.across, bay);
+        let ways = whole.ways_in(by, whole.around(&candidate), &rivals);
         found.extend(
             ways.into_iter().filter(|way| way.along[0] < candidate.along[1] && candidate.along[0] < way.along[1]),
         );
@@ -81,43 +115,63 @@ fn is_beside(one: &Strip, two: &Strip) -> bool {
     together > 0.0 && shared > SHARED * one.width().min(two.width())
 }
 
+/// How much is occupied between two places across: where it is next to nothing, no column need be asked.
+struct Seen<'a> {
+    view: &'a Turned,
+    /// Occupied samples below each row of cells.
+    below: Vec<u64>,
+}
+
+impl<'a> Seen<'a> {
+    fn new(view: &'a Turned) -> Self {
+        let place = |row: usize| view.start[1] + row as f64 * view.cell;
+        let mut below = vec![0];
+        for row in 0..view.size[1] {
+            let occupied = view.occupied_in(place(row), place(row + 1)).over(0..view.size[0]);
+            below.push(below[row] + occupied.into_iter().map(u64::from).sum::<u64>());
+        }
+        Self { view, below }
+    }
+
+    /// Occupied samples, a row to either side included.
+    fn between(&self, [low, high]: [f64; 2]) -> f64 {
+        let row = |v: f64| ((v - self.view.start[1]) / self.view.cell).max(0.0) as usize;
+        let last = self.below.len() - 1;
+        (self.below[(row(high) + 2).min(last)] - self.below[row(low).saturating_sub(1).min(last)]) as f64
+    }
+}
+
 /// A strip, asked column by column.
 struct Candidate<'a> {
     view: &'a Turned,
     across: [f64; 2],
+    /// It may be a row of empty bays.
+    bay: bool,
     blocked: Shares<'a>,
     /// Of blocked cells, the least that count as so much.
     closed: u32,
     cluttered: u32,
     unclear: u32,
-    /// What lies beyond its sides, and how many blocked cells hold there.
-    beyond: [(Shares<'a>, u32); 2],
 }
 
-/// What a column is to a way along the strip.
-#[derive(Clone, Copy)]
-struct Column {
-    clear: bool,
-    held: [bool; 2],
-    score: i64,
+/// What the columns of a stretch are to a way along the strip.
+struct Columns {
+    clear: Vec<bool>,
+    held: [Vec<bool>; 2],
+    scores: Vec<i64>,
 }
 
 impl<'a> Candidate<'a> {
-    fn new(view: &'a Turned, across: [f64; 2]) -> Self {
+    fn new(view: &'a Turned, across: [f64; 2], bay: f64) -> Self {
         let blocked = view.blocked_in(across[0], across[1]);
-        let beyond = beyond(across).map(|[low, high]| {
-            let side = view.blocked_in(low, high);
-            let held = side.least(|share| share >= HELD);
-            (side, held)
-        });
         Self {
             view,
             across,
+            bay: across[1] - across[0] <= bay,
             closed: blocked.least(|share| share > IMPASSABLE),
             cluttered: blocked.least(|share| share > CLUTTERED),
             unclear: blocked.least(|share| share > CLEAR),
             blocked,
-            beyond,
         }
     }
 
@@ -140,18 +194,42 @@ impl<'a> Candidate<'a> {
         stretches
     }
 
-    fn column(&self, c: usize) -> Column {
-        let blocked = self.blocked.at(c);
-        let clear = blocked < self.unclear;
-        let held = [0, 1].map(|side| self.beyond[side].0.at(c) >= self.beyond[side].1);
-        let score = match (clear, held) {
-            _ if blocked >= self.cluttered => -BLOCKED,
+    /// What the columns of a stretch are, where so many of them may be a way.
+    fn columns(&self, stretch: &Range<usize>, by: Held, least: usize) -> Option<Columns> {
+        let enough = |count: usize, share: f64| count as f64 >= share * least as f64;
+        let blocked = self.blocked.over(stretch.clone());
+        let clear: Vec<bool> = blocked.iter().map(|blocked| *blocked < self.unclear).collect();
+        if !enough(clear.iter().filter(|clear| **clear).count(), LEAST_CLEAR) {
+            return None;
+        }
+        let held = beyond(self.across).map(|side| self.held(stretch, by, side));
+        let both = held[0].iter().zip(&held[1]).filter(|(one, two)| **one && **two).count();
+        if !enough(both, LEAST_BOTH) {
+            return None;
+        }
+        let score = |n: usize| match (clear[n], [held[0][n], held[1][n]]) {
+            _ if blocked[n] >= self.cluttered => -BLOCKED,
+            (false, _) if by == Held::Thin => -BLOCKED,
             (true, [true, true]) => FULL,
             (false, [true, true]) => NARROWED,
             (_, [false, false]) => -OPEN,
             _ => ONE_SIDED,
         };
-        Column { clear, held, score }
+        let scores = (0..clear.len()).map(score).collect();
+        Some(Columns { clear, held, scores })
+    }
+
+    /// In which columns of a stretch a side holds.
+    fn held(&self, stretch: &Range<usize>, by: Held, [low, high]: [f64; 2]) -> Vec<bool> {
+        let side = self.view.blocked_in(low, high);
+        let least = side.least(|share| share >= HELD);
+        let mut held: Vec<bool> = side.over(stretch.clone()).into_iter().map(|blocked| blocked >= least).collect();
+        if by == Held::Thin {
+            let seen = self.view.occupied_in(low, high).over(stretch.clone());
+            held.iter_mut().zip(seen).for_each(|(held, seen)| *held |= seen > 0);
+            close(&mut held, (GAP / self.view.cell) as usize);
+        }
+        held
     }
 
     /// The columns around a way along it up to where it is closed: beyond nothing bears on what lies there.
@@ -163,53 +241,50 @@ impl<'a> Candidate<'a> {
     }
 
     /// The ways along it.
-    fn ways(&self) -> Vec<Strip> {
-        self.ways_in(0..self.view.size[0], &[])
+    fn ways(&self, by: Held) -> Vec<Strip> {
+        self.ways_in(by, 0..self.view.size[0], &[])
     }
 
     /// The ways along it that rivals leave, among some columns.
-    fn ways_in(&self, within: Range<usize>, rivals: &[&Strip]) -> Vec<Strip> {
+    fn ways_in(&self, by: Held, within: Range<usize>, rivals: &[&Strip]) -> Vec<Strip> {
         let view = self.view;
         let width = self.across[1] - self.across[0];
-        let least = ((SHORTEST.max(LONG * width) / view.cell) as usize).max(1);
+        let least = ((by.shortest(width) / view.cell) as usize).max(1);
         let rivals: Vec<Range<usize>> =
             rivals.iter().map(|rival| view.column(rival.along[0])..view.column(rival.along[1]) + 1).collect();
         let mut ways = Vec::new();
         for stretch in self.open(within, least, &rivals) {
-            let columns: Vec<Column> = stretch.clone().map(|c| self.column(c)).collect();
-            let clear = columns.iter().filter(|column| column.clear).count();
-            if (clear as f64) < LEAST_CLEAR * least as f64 {
-                continue;
-            }
-            let scores: Vec<i64> = columns.iter().map(|column| column.score).collect();
-            let pieces = best_pieces(&scores).into_iter().filter(|(from, to)| to - from >= least);
-            ways.extend(pieces.filter(|&(from, to)| self.is_way(&columns[from..to], stretch.start + from)).map(
+            let Some(columns) = self.columns(&stretch, by, least) else { continue };
+            let pieces = best_pieces(&columns.scores).into_iter().filter(|(from, to)| to - from >= least);
+            ways.extend(pieces.filter(|&(from, to)| self.is_way(&columns, by, from..to, stretch.start)).map(
                 |(from, to)| Strip {
                     direction: view.direction,
                     along: [view.along(stretch.start + from), view.along(stretch.start + to)],
                     across: self.across,
-                    score: scores[from..to].iter().sum::<i64>() as f64 / FULL as f64 * view.cell * width,
+                    score: columns.scores[from..to].iter().sum::<i64>() as f64 / FULL as f64 * view.cell * width,
                 },
             ));
         }
         ways
     }
 
-    fn is_way(&self, columns: &[Column], first: usize) -> bool {
-        let view = self.view;
-        let range = first..first + columns.len();
-        let share = |is: &dyn Fn(&Column) -> bool| {
-            columns.iter().filter(|column| is(column)).count() as f64 / columns.len() as f64
-        };
+    fn is_way(&self, columns: &Columns, by: Held, range: Range<usize>, first: usize) -> bool {
+        let (view, sides) = (self.view, beyond(self.across));
+        let length = range.len() as f64;
+        let share = |flags: &[bool]| flags[range.clone()].iter().filter(|flag| **flag).count() as f64 / length;
+        let both = range.clone().filter(|&c| columns.held[0][c] && columns.held[1][c]).count() as f64 / length;
+        let on_map = first + range.start..first + range.end;
         let seen = |[low, high]: [f64; 2]| {
-            let seen = view.some_occupied(range.clone(), low, high).into_iter().filter(|share| *share > 0.0);
-            seen.count() as f64 / columns.len() as f64
+            let seen = view.some_occupied(on_map.clone(), low, high).into_iter().filter(|share| *share > 0.0);
+            seen.count() as f64 / length
         };
-        share(&|column| column.clear) >= LEAST_CLEAR
-            && [0, 1].iter().all(|&side| share(&|column| column.held[side]) >= LEAST_HELD)
-            && share(&|column| column.held == [true, true]) >= LEAST_BOTH
-            && beyond(self.across).into_iter().all(|side| seen(side) >= LEAST_SEEN)
-            && !barriers::across(view, self.across, range.clone()).contains(&true)
+        share(&columns.clear) >= LEAST_CLEAR
+            && columns.held.iter().all(|held| share(held) >= LEAST_HELD)
+            && both >= if by == Held::Thin && self.bay { LEAST_BOTH_BAY } else { LEAST_BOTH }
+            && sides.into_iter().all(|side| seen(side) >= LEAST_SEEN)
+            && !barriers::across(view, self.across, on_map.clone()).contains(&true)
+            && !barriers::doors(view, sides, on_map.clone()).contains(&true)
+            && barriers::stops(view, self.across, on_map).is_empty()
     }
 }
 

@@ -20,11 +20,11 @@ use crate::grid::{State, tidy};
 const ALONE: (f64, f64) = (2.0, 5.0);
 /// And one that is shut at both its ends, be it with a door, so many times: less is a room.
 const SHUT: f64 = 4.5;
-/// A corridor that meets one other goes on beyond it for so many times its width, or it is a niche at its side.
-const NICHE: f64 = 1.5;
+/// A corridor that meets one other goes on beyond it, on one side for so many times its width and so far, metres, or on
+/// both together for as many times and so far: or it is a niche at the other's side.
+const NICHE: (f64, f64) = (1.5, 2.5);
+const NICHES: (f64, f64) = (2.2, 4.0);
 
-/// A place has racks when it has so many, and so many metres of them for a metre of corridor.
-const RACKS: (usize, f64) = (3, 0.22);
 /// So far round a rack there are no doors, metres.
 const RIM: f64 = 0.4;
 
@@ -45,6 +45,7 @@ pub fn find(evidence: &Evidence, ground: &Ground) -> Vec<Label> {
         (views, plan)
     });
     let Plan { strips, meetings, ends, extents, rows } = plan;
+    let rows = if racks::are_here(&rows, &extents) { rows } else { Vec::new() };
 
     // A face is of one junction at most, and of one corridor.
     let mut faces = Faces::new(evidence, |state| state == State::Free);
@@ -101,11 +102,7 @@ pub fn find(evidence: &Evidence, ground: &Ground) -> Vec<Label> {
 
 /// The racks' own ground, and, with a rim round it, the corridors along racks and those that cross them.
 fn racked(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], meetings: &[Meeting], rows: &[Row]) -> Racked {
-    // In an office what lies between two corridors is rooms: there are racks where there are several.
-    let length = |ends: &[f64; 2]| ends[1] - ends[0];
-    let racks: f64 = rows.iter().map(|row| length(&row.along)).sum();
-    let corridors: f64 = extents.iter().map(length).sum();
-    if rows.len() < RACKS.0 || racks < RACKS.1 * corridors {
+    if rows.is_empty() {
         return Racked::default();
     }
     let mut along: Vec<usize> = rows.iter().filter_map(|row| row.between).flatten().collect();
@@ -219,15 +216,23 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
         let met = junctions::of_each(&meetings, strips.len());
         let leads = |n: usize| {
             let met = met[n].iter().map(|&m| &meetings[m]);
-            let reach = met.clone().map(|m| m.reach[usize::from(m.corridors[0] != n)]).sum::<f64>();
-            let beyond = strips[n].length() - reach;
-            match met.count() {
+            let is_niche = |meeting: &Meeting| {
+                let strip = &strips[n];
+                let at = views[strip.direction].place(meeting.at)[0];
+                let reach = meeting.reach[usize::from(meeting.corridors[0] != n)];
+                let beyond = strip.length() - reach;
+                let both = strip.length() - 2.0 * reach;
+                let arm = (at - reach - strip.along[0]).max(strip.along[1] - at - reach).min(beyond);
+                let goes_on = |metres: f64, (widths, least): (f64, f64)| metres >= least.max(widths * strip.width());
+                !goes_on(arm, NICHE) && !goes_on(both, NICHES)
+            };
+            match met.clone().count() {
                 0 | 1 if racks::is_within_row(&strips, n) => false,
                 0 if junctions::is_shut(views, &strips[n], 0) && junctions::is_shut(views, &strips[n], 1) => {
                     strips[n].length() >= SHUT * strips[n].width()
                 }
                 0 => strips[n].length() >= ALONE.1.max(ALONE.0 * strips[n].width()),
-                1 => beyond >= NICHE * strips[n].width(),
+                1 => !met.clone().any(is_niche),
                 _ => true,
             }
         };

@@ -229,9 +229,17 @@ impl Turned {
 
     /// How much of every column is not free between two places across, as it is counted.
     pub fn blocked_in(&self, low: f64, high: f64) -> Shares<'_> {
+        self.shares_in(What::Blocked, low, high)
+    }
+
+    /// The same of what is occupied.
+    pub fn occupied_in(&self, low: f64, high: f64) -> Shares<'_> {
+        self.shares_in(What::Occupied, low, high)
+    }
+
+    fn shares_in(&self, what: What, low: f64, high: f64) -> Shares<'_> {
         let (from, to) = self.cells(low, high);
-        let rows = self.cells.rows(What::Blocked, from, to);
-        Shares { rows, count: (to - from) as u32 * self.counts(What::Blocked) }
+        Shares { rows: self.cells.rows(what, from, to), count: (to - from) as u32 * self.counts(what) }
     }
 
     fn shares(&self, what: What, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
@@ -261,6 +269,11 @@ impl Shares<'_> {
     /// Of so many samples of a column.
     pub fn at(&self, column: usize) -> u32 {
         self.rows.at(column)
+    }
+
+    /// The same of a range of columns.
+    pub fn over(&self, columns: Range<usize>) -> Vec<u32> {
+        self.rows.over(columns)
     }
 
     /// The least number of samples whose share is as much as is asked for. Where there is no sample the share is all.

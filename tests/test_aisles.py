@@ -1,0 +1,84 @@
+"""What a person calls an aisle and what not, on maps of places that no simulator made up."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import groundplan
+
+RESOLUTION = 0.05
+
+
+def between_machines(gap: int) -> npt.NDArray[np.uint8]:
+    """A hall of 30 m by 7 m with four rows of machines of 0.95 m by 0.4 m at any depth, with gaps of so many pixels."""
+    draws = np.random.default_rng(5)
+    picture = np.full((180, 640), 205, np.uint8)
+    picture[18:162, 18:622] = 0
+    picture[20:160, 20:620] = 254
+    for row in (46, 73, 107, 134):
+        for x in range(60, 560, 19 + gap):
+            low, high = (row - 4 - int(draws.integers(0, 2)), row + 4 + int(draws.integers(0, 2)))
+            picture[low:high, x : x + 19] = 0
+            picture[low + 1 : high - 1, x + 1 : x + 18] = 205
+    return picture
+
+
+def cubicles() -> npt.NDArray[np.uint8]:
+    """Three ways of 30 m by 1.8 m and two across them; along each, niches of 1.6 m by 1.8 m, opposite one another."""
+    picture = np.full((560, 640), 205, np.uint8)
+    ways = (80, 270, 460)
+    for way in ways:
+        for x in range(100, 520, 60):
+            picture[way - 38 : way + 74, x - 2 : x + 34] = 0
+    for wall in (2, 0):
+        value = 0 if wall else 254
+        for way in ways:
+            picture[way - wall : way + 36 + wall, 20 - wall : 620 + wall] = value
+        for x in (22, 580):
+            picture[80 - wall : 496 + wall, x - wall : x + 38 + wall] = value
+    for way in ways:
+        for x in range(100, 520, 60):
+            picture[way - 36 : way + 72, x : x + 32] = 254
+    return picture
+
+
+def rooms_in_line() -> npt.NDArray[np.uint8]:
+    """Five rooms of 5 m by 6 m, with doors of 1.1 m in line."""
+    picture = np.full((160, 560), 205, np.uint8)
+    for n in range(5):
+        x = 20 + 104 * n
+        picture[18:142, x - 2 : x + 104] = 0
+        picture[20:140, x : x + 100] = 254
+        picture[24:60, x + 2 : x + 30] = 0
+        picture[100:136, x + 60 : x + 90] = 0
+    for n in range(4):
+        picture[69:91, 118 + 104 * n : 126 + 104 * n] = 254
+    return picture
+
+
+@pytest.mark.parametrize("gap", [8, 14])
+def test_ways_between_rows_of_machines_are_aisles(gap: int) -> None:
+    aisles = groundplan.survey(between_machines(gap), resolution=RESOLUTION).of_kind("corridor")
+    long = [aisle for aisle in aisles if np.hypot(*np.subtract(*aisle["axis"])) >= 20.0]
+    assert len(long) == len(aisles) == 5
+
+
+def test_niches_along_a_way_are_no_aisles_and_what_lies_between_is_no_rack() -> None:
+    survey = groundplan.survey(cubicles(), resolution=RESOLUTION)
+    assert len(survey.of_kind("corridor")) == 5 and not survey.of_kind("rack")
+    assert {label["type"] for label in survey.of_kind("junction")} == {"L", "T"}
+
+
+def test_rooms_with_doors_in_line_are_no_aisle() -> None:
+    assert not groundplan.survey(rooms_in_line(), resolution=RESOLUTION).of_kind("corridor")
+
+
+@pytest.mark.parametrize(("name", "aisles", "racks"), [("radish_intel_jones_farms", 8, 0), ("textile_factory", 5, 0)])
+def test_real_sites_have_the_aisles_that_a_person_counts(name: str, aisles: int, racks: int, shared: Path) -> None:
+    survey = groundplan.survey(groundplan.read(shared / "maps" / f"{name}.yaml"))
+    assert len(survey.of_kind("corridor")) == aisles
+    assert len(survey.of_kind("rack")) == racks
