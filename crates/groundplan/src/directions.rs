@@ -4,7 +4,7 @@ use crate::gradients::Gradients;
 use crate::grid::{Frame, angle_between, tidy, tidy_angle, undirected};
 use crate::oriented::{BINS, Oriented, Sharpness};
 use crate::parameters::Parameters;
-use crate::radiograms::{Selection, metres_per_unit};
+use crate::radiograms::{UNIT, bins, metres_per_unit, project};
 use std::f64::consts::PI;
 
 /// The dominant directions, strongest first, and what they were decided from.
@@ -221,7 +221,7 @@ struct Aligned {
 
 fn aligned(frame: &Frame, rest: &Oriented, angle: f64) -> Aligned {
     let indices = rest.along(angle, ALIGNED_DEG.to_radians());
-    let (first, bins) = Selection::whole(indices.iter().map(|&n| rest.pixel(n))).project(frame, angle);
+    let (first, bins) = project(frame, angle, indices.iter().map(|&n| (rest.pixel(n), UNIT)));
     let unit = metres_per_unit(frame, angle) / frame.resolution;
     let values: Vec<f64> = bins.iter().map(|&bin| bin as f64 * unit).collect();
     let mut sums = vec![0.0];
@@ -250,8 +250,9 @@ fn aligned(frame: &Frame, rest: &Oriented, angle: f64) -> Aligned {
 /// Takes out the pixels on lines.
 fn take(rest: &mut Oriented, angle: f64, lines: &Aligned, parameters: &Parameters) {
     let indices = rest.along(angle, parameters.radiograms_tolerance_deg.to_radians());
-    let selection = Selection::whole(indices.iter().map(|&n| rest.pixel(n)));
     let is_on_line = |bin: i64| lines.on_line[(bin - lines.first) as usize];
-    let gone = indices.iter().zip(selection.bins(angle)).filter(|(_, bin)| is_on_line(*bin));
-    rest.remove(gone.map(|(&index, _)| index));
+    let bins = bins(angle, indices.iter().map(|&n| rest.pixel(n)));
+    let gone: Vec<u32> =
+        indices.iter().zip(bins).filter(|(_, bin)| is_on_line(*bin)).map(|(&index, _)| index).collect();
+    rest.remove(gone.into_iter());
 }

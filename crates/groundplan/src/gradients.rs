@@ -68,7 +68,12 @@ pub fn find_gradients_in(
         }
         part
     });
+    drop(edges);
     let mut all = Gradients::default();
+    let count = parts.iter().map(|part| part.pixels.len()).sum();
+    all.pixels.reserve_exact(count);
+    all.angles.reserve_exact(count);
+    all.magnitudes.reserve_exact(count);
     for part in parts {
         all.pixels.extend(part.pixels);
         all.angles.extend(part.angles);

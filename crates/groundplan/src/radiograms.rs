@@ -19,7 +19,7 @@ pub struct Radiogram {
 }
 
 /// A weight of one pixel, in the whole numbers that projections are summed in.
-const UNIT: i64 = 16;
+pub(crate) const UNIT: i64 = 16;
 /// Below this magnitude a pixel has no direction of its own and counts a little in every one.
 const SPECK_MAGNITUDE: i64 = 128;
 /// A speck's share of a pixel's weight.
@@ -29,61 +29,38 @@ const BITS: u32 = 20;
 /// Fixed-point bits of the place between two bins.
 const FRACTION_BITS: u32 = 4;
 
-/// Which pixels to project, and how much each weighs.
-pub(crate) struct Selection {
-    /// Column and row, doubled plus one: the pixel's centre in half pixels.
-    centres: Vec<[i64; 2]>,
-    weights: Vec<i64>,
+/// Sums of pixels' weights over offset across `angle` (on the grid), split between the two nearest bins, and the offset of
+/// the first bin in pixels.
+pub(crate) fn project(frame: &Frame, angle: f64, pixels: impl Iterator<Item = ([u32; 2], i64)>) -> (i64, Vec<i64>) {
+    let [nx, ny] = normal(angle);
+    let (width, height) = (frame.width as i64, frame.height as i64);
+    let corners = [0, nx * width, ny * height, nx * width + ny * height].map(|c| c >> BITS);
+    let first = corners.into_iter().min().unwrap_or(0) - 2;
+    let last = corners.into_iter().max().unwrap_or(0) + 2;
+    let mut bins = vec![0i64; (last - first + 1) as usize];
+    // Half pixels times 2^BITS to fractions of a bin, rounded; bins sit at whole pixels.
+    let shift = BITS + 1 - FRACTION_BITS;
+    let half = 1 << (shift - 1);
+    for (pixel, weight) in pixels {
+        let [x, y] = centre(pixel);
+        let place = (nx * x + ny * y + half) >> shift;
+        let bin = (place >> FRACTION_BITS) - first;
+        let part = place & ((1 << FRACTION_BITS) - 1);
+        bins[bin as usize] += weight * ((1 << FRACTION_BITS) - part);
+        bins[bin as usize + 1] += weight * part;
+    }
+    (first, bins)
 }
 
-impl Selection {
-    /// Pixels that weigh as much as a pixel can.
-    pub fn whole(pixels: impl Iterator<Item = [u32; 2]>) -> Self {
-        let centres: Vec<[i64; 2]> = pixels.map(|pixel| pixel.map(|p| 2 * i64::from(p) + 1)).collect();
-        Self { weights: vec![UNIT; centres.len()], centres }
-    }
+/// The bin that each pixel lies nearest to.
+pub(crate) fn bins(angle: f64, pixels: impl Iterator<Item = [u32; 2]>) -> impl Iterator<Item = i64> {
+    let [nx, ny] = normal(angle);
+    pixels.map(centre).map(move |[x, y]| (nx * x + ny * y + (1 << BITS)) >> (BITS + 1))
+}
 
-    /// The pixels that lie along `angle` (on the grid), within `tolerance`; those without a direction count a little too,
-    /// as the posts of a rack do.
-    fn along(gradients: &Gradients, angle: f64, tolerance: f64) -> Self {
-        let mut chosen = Self { centres: Vec::new(), weights: Vec::new() };
-        let all = gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes);
-        for ((pixel, &along), &magnitude) in all {
-            let weight = weight(f64::from(along), magnitude, angle, tolerance);
-            if weight > 0 {
-                chosen.centres.push(pixel.map(|p| 2 * i64::from(p) + 1));
-                chosen.weights.push(weight);
-            }
-        }
-        chosen
-    }
-
-    /// Sums of weights over offset, split between the two nearest bins, and the offset of the first bin in pixels.
-    pub fn project(&self, frame: &Frame, angle: f64) -> (i64, Vec<i64>) {
-        let [nx, ny] = normal(angle);
-        let (width, height) = (frame.width as i64, frame.height as i64);
-        let corners = [0, nx * width, ny * height, nx * width + ny * height].map(|c| c >> BITS);
-        let first = corners.into_iter().min().unwrap_or(0) - 2;
-        let last = corners.into_iter().max().unwrap_or(0) + 2;
-        let mut bins = vec![0i64; (last - first + 1) as usize];
-        // Half pixels times 2^BITS to fractions of a bin, rounded; bins sit at whole pixels.
-        let shift = BITS + 1 - FRACTION_BITS;
-        let half = 1 << (shift - 1);
-        for ([x, y], weight) in self.centres.iter().zip(&self.weights) {
-            let place = (nx * x + ny * y + half) >> shift;
-            let bin = (place >> FRACTION_BITS) - first;
-            let part = place & ((1 << FRACTION_BITS) - 1);
-            bins[bin as usize] += weight * ((1 << FRACTION_BITS) - part);
-            bins[bin as usize + 1] += weight * part;
-        }
-        (first, bins)
-    }
-
-    /// The bin that each pixel lies nearest to.
-    pub fn bins(&self, angle: f64) -> impl Iterator<Item = i64> + '_ {
-        let [nx, ny] = normal(angle);
-        self.centres.iter().map(move |[x, y]| (nx * x + ny * y + (1 << BITS)) >> (BITS + 1))
-    }
+/// Column and row, doubled plus one: the pixel's centre in half pixels.
+fn centre(pixel: [u32; 2]) -> [i64; 2] {
+    pixel.map(|p| 2 * i64::from(p) + 1)
 }
 
 /// Normal of a direction in fixed point.
@@ -123,7 +100,11 @@ pub fn find_radiograms(
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
     let project = |(direction, &angle): (usize, &f64)| {
         let angle = frame.angle_to_grid(angle);
-        let (first, bins) = Selection::along(gradients, angle, tolerance).project(frame, angle);
+        // The pixels that lie along it; those without a direction count a little too, as the posts of a rack do.
+        let all = gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes);
+        let weighed =
+            all.map(|((pixel, &along), &magnitude)| (*pixel, weight(f64::from(along), magnitude, angle, tolerance)));
+        let (first, bins) = project(frame, angle, weighed.filter(|(_, weight)| *weight > 0));
         let unit = metres_per_unit(frame, angle);
         // Turning by pi flips the normal, so the map frame's offsets may run the other way.
         let ends = [first, first + bins.len() as i64 - 1].map(|bin| frame.offset_to_map(angle, bin as f64));

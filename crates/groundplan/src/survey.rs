@@ -1,7 +1,7 @@
 //! The stages in a row.
 
 use crate::adjacency::{Adjacency, find_adjacency};
-use crate::arrangement::{Arrangement, arrange};
+use crate::arrangement::arrange;
 use crate::bands::both;
 use crate::directions::{Directions, find_directions};
 use crate::gradients::{Gradients, find_gradients};
@@ -35,8 +35,6 @@ pub struct Survey {
     pub radiograms: Vec<Radiogram>,
     /// II-B: lines.
     pub lines: Lines,
-    /// II-C: half-edges on the lattice.
-    pub arrangement: Arrangement,
     /// II-C: vertices, edges, faces.
     pub subdivision: Subdivision,
     /// II-D: O(face), O(edge).
@@ -105,10 +103,11 @@ fn without_labels(grid: &Grid, parameters: &Parameters, given: Given, threads: u
     let radiograms = find_radiograms(frame, &gradients, &directions, parameters);
     let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
     let arrangement = arrange(frame, &directions.angles, &lines);
-    let subdivision = Subdivision::new(frame, arrangement.clone());
     let fits = |sums: &FaceSums| [&sums.within, &sums.under].iter().all(|part| part.len() == arrangement.face_count());
     let sums = given.sums.filter(fits).unwrap_or_else(|| FaceSums::new(grid, &arrangement, 0..frame.height, threads));
     let occupancy = find_occupancy(frame, &sums, &arrangement, &directions, &lines, &gradients, parameters);
+    drop(sums);
+    let subdivision = Subdivision::new(frame, arrangement);
     let walls = find_walls(&subdivision, &occupancy, parameters);
     let adjacency = find_adjacency(&subdivision, &walls);
     Survey {
@@ -116,7 +115,6 @@ fn without_labels(grid: &Grid, parameters: &Parameters, given: Given, threads: u
         directions,
         radiograms,
         lines,
-        arrangement,
         subdivision,
         occupancy,
         walls,
