@@ -135,6 +135,26 @@ def test_an_update_goes_on_with_what_the_survey_was_given() -> None:
         assert found.parameters["labels.method"] == "paper"
 
 
+def test_where_nothing_occupied_changed_the_lines_stay() -> None:
+    map = tower()
+    explored = map.pixels.copy()
+    explored[explored == UNKNOWN] = FREE
+    explored[:20] = UNKNOWN
+    cases: list[dict[str, Any]] = [{}, {"directions": groundplan.Directions.of([0.1, 1.2])}]
+    for own in cases:
+        found = groundplan.survey(map, keep=True, **own).update(replace(map, pixels=explored))
+        assert found.to_json() == groundplan.survey(replace(map, pixels=explored), **own).to_json()
+
+
+def test_what_changes_nothing_costs_nothing() -> None:
+    map = tower()
+    survey = groundplan.survey(map)
+    assert survey.update(map.pixels[30:90, 20:99], 30, 20) is survey
+    assert survey.update(replace(map, pixels=map.pixels.copy())) is survey
+    named = survey.update(replace(map, image="tower.png"))
+    assert named.to_json() == groundplan.survey(replace(map, image="tower.png")).to_json()
+
+
 def test_routes_go_over_the_map_as_it_is_now() -> None:
     picture = np.full((100, 200), FREE, np.uint8)
     picture[:, :3] = picture[:, -3:] = picture[:3] = picture[-3:] = OCCUPIED

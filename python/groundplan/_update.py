@@ -19,7 +19,7 @@ from groundplan.maps import Map
 from groundplan.maps._canvas import Canvas
 from groundplan.maps._source import Bytes, bands
 from groundplan.parameters import named
-from groundplan.stages import cores, layout
+from groundplan.stages import cores, layout, record
 
 if TYPE_CHECKING:
     from groundplan.survey import Survey
@@ -51,16 +51,23 @@ def update(survey: Survey, change: Any, row: int | None, column: int | None, thr
         areas = list(differing(old.pixels, new.pixels))
     else:
         new, area = patched(old, change, row, column)
-        areas = [area]
+        areas = [area] if changes(old, new, area) else []
+    if not areas and (old.image, old.warnings) == (new.image, new.warnings):
+        return survey
     gradients = known.get("_gradients")
     reach = _core.reach(layout(new), named(parameters))
     areas = [wider(area, reach, new) for area in areas]
     looked_at = sum((top - low) * (right - left) for (low, top), (left, right) in areas)
     if gradients is None or 2 * looked_at > new.pixels.size:
         return surveyed(new, parameters, threads, own, {}, keep=True)
+    before = gradients
     for area in areas:
         gradients = replaced(gradients, new, area, parameters, cores(threads))
-    return surveyed(new, parameters, threads, own, {"gradients": gradients}, keep=True)
+    parts = {"gradients": gradients}
+    if all(np.array_equal(before[name], gradients[name]) for name in before):
+        # Nothing that is occupied has changed: the lines stay, be they on other ground.
+        parts |= {"directions": record(survey.directions), "lines": record(survey.lines)}
+    return surveyed(new, parameters, threads, own, parts, keep=True)
 
 
 def comparable(old: Map, new: Map) -> bool:
@@ -89,6 +96,13 @@ def differing(old: Bytes, new: Bytes) -> Iterator[Area]:
             found = None
     if found is not None:
         yield found
+
+
+def changes(old: Map, new: Map, area: Area) -> bool:
+    """Whether anything is different there."""
+    (low, top), across = area
+    lies = slice(old.height - top, old.height - low), slice(*across)
+    return not np.array_equal(old.pixels[lies], new.pixels[lies])
 
 
 def patched(map: Map, patch: Any, row: int | None, column: int | None) -> tuple[Map, Area]:

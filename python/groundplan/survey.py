@@ -222,8 +222,9 @@ class Survey(Stage):
         Returns
         -------
         Survey
-            To be updated in its turn; what `groundplan.survey` was given beside the map still holds. A patch does not
-            change how pixels are read, nor the warnings of that; another map brings its own.
+            To be updated in its turn; where nothing changed, this one. What `groundplan.survey` was given beside the
+            map still holds. A patch does not change how pixels are read, nor the warnings of that; another map brings
+            its own.
 
         Raises
         ------
