@@ -167,6 +167,13 @@ def test_own_stages_and_parameters_hold_on_a_cluster_too(client: Any) -> None:
         assert found.to_json() == groundplan.survey(map, threads=1, **own).to_json()
 
 
+def test_lines_that_do_not_fit_are_refused_as_everywhere(client: Any) -> None:
+    for parallel in (None, client):
+        with pytest.raises(groundplan.ParameterError, match="a direction that there is not") as caught:
+            groundplan.survey(hall(), resolution=RESOLUTION, lines=groundplan.Lines.of([77], [3.0]), client=parallel)
+        assert caught.value.code == "stage.input"
+
+
 def test_however_the_map_is_cut_the_bytes_are_the_same(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     map = groundplan.from_array(ZOO["two_blocks_of_racks"](), **FRAME)
     expected = groundplan.survey(map, threads=1).to_json()

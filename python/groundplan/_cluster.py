@@ -30,7 +30,7 @@ from groundplan.maps._read import read_or_leave
 from groundplan.maps._source import Span
 from groundplan.maps._tally import Tally, summed
 from groundplan.parameters import named
-from groundplan.stages import layout
+from groundplan.stages import layout, run
 
 if TYPE_CHECKING:
     from groundplan.survey import Survey
@@ -109,6 +109,7 @@ def open_map(path: str | os.PathLike[str], reading: dict[str, Any], client: Any)
     MapError
         As `groundplan.read`; ``cluster.path`` where a worker has no such file.
     """
+    checked(client)
     counted: list[Tally] = []
 
     def count(far: Distant) -> Tally:
@@ -167,10 +168,11 @@ def survey_site(
     # The lowest rows come first in gradients, the highest in maps.
     gradients = {name: np.concatenate([part.pop(name) for part in reversed(found)]) for name in list(found[0])}
     grid = layout(map)
-    directions = own.get("directions") or _core.find_directions(grid, gradients, values)
-    lines = own.get("lines") or _core.find_lines(_core.find_radiograms(grid, gradients, directions, values), values)
+    directions = own.get("directions") or run(_core.find_directions, grid, gradients, values)
+    radiograms = run(_core.find_radiograms, grid, gradients, directions, values)
+    lines = own.get("lines") or run(_core.find_lines, radiograms, values)
+    faces = len(run(_core.subdivide, grid, directions, lines)["areas"])
     sources = [(pixels_of(span), span, map.height, meaning, directions, lines) for span in spans]
-    faces = len(_core.subdivide(grid, directions, lines)["areas"])
     sums = np.zeros((faces, 8), np.int64)
     for which, rows in gather(client, add_faces, sources):
         sums[which] += rows
