@@ -15,11 +15,12 @@ import numpy.typing as npt
 
 from groundplan import _core
 from groundplan._errors import ParameterError
+from groundplan._results import record
 from groundplan.maps import Map
 from groundplan.maps._canvas import Canvas
 from groundplan.maps._source import Bytes, bands
 from groundplan.parameters import named
-from groundplan.stages import cores, layout, record
+from groundplan.stages import cores, layout
 
 if TYPE_CHECKING:
     from groundplan.survey import Survey
