@@ -43,7 +43,7 @@ docs: .venv/.built ## Make anew what the docs show: parameters, scores, the READ
 	$(bin)/groundplan parameters --markdown > docs/parameters.md
 	$(bin)/python docs/make.py
 
-gallery: .venv/.built ## Draw the surveys of the maps in ../shared into gallery/; MAPS="name ..." for some
+gallery: .venv/.built ## Draw surveys and road maps of the maps in ../shared into gallery/; MAPS="name ..." for some
 	$(bin)/python docs/gallery.py $(MAPS)
 
 format: .venv/.installed ## Format both languages, and mend what the linter can

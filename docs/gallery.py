@@ -1,43 +1,87 @@
-"""Draw the survey and the road map of every map in ../shared/maps into gallery/, for looking at. Run by `make gallery`.
+"""Draw surveys and road maps of the maps in ../shared/maps and of a simulated warehouse. Run by `make gallery`.
 
-The maps are not ours, so the pictures over them stay out of the repository. Names given on the command line choose
-single ones: `make gallery MAPS="svl_warehouse nav2_warehouse"`.
+They go into gallery/, for looking at: maps that are not ours stay out of the repository, and so do pictures over them.
+Of the simulated warehouse and of some maps every format is written too, into gallery/NAME-export/, and the drawing and
+the report are printed where LibreCAD and poppler are installed. Names given on the command line choose single ones:
+`make gallery MAPS="svl_warehouse nav2_warehouse simulated"`.
 """
 
 from __future__ import annotations
 
 import os
+import shutil
+import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import groundplan
+from groundplan import simulate
+from groundplan.export import FORMATS
 from groundplan.figures import draw_road_map, draw_survey
 from groundplan.roadmap import road_map
 
 ROOT = Path(__file__).resolve().parent.parent
 SHARED = Path(os.environ.get("GROUNDPLAN_SHARED", ROOT.parent / "shared"))
+GALLERY = ROOT / "gallery"
+SIMULATED = "simulated"
+#: Those that are written in every format.
+EXPORTED = (SIMULATED, "radish_intel_jones_farms", "nav2_warehouse")
 
 
 def main(chosen: list[str]) -> None:
     """Draw the chosen maps, or all."""
-    maps = sorted((SHARED / "maps").rglob("*.yaml"))
-    if not maps:
+    for name, map in maps(chosen):
+        survey = groundplan.survey(map)
+        draw_survey(survey, map, GALLERY / f"{name}.png")
+        roads = road_map(survey, map=map)
+        if roads.lanes:
+            draw_road_map(survey, map, roads, GALLERY / f"{name}-roads.png")
+        kinds = ("corridor", "junction", "rack", "region")
+        counts = [f"{len(survey.of_kind(kind))} {kind}s" for kind in kinds]
+        counts = [f"{len(survey.directions)} directions", f"{len(survey.lines)} lines", *counts]
+        print(f"{name}: {', '.join(counts)}, {len(roads.lanes)} lanes")
+        if name in EXPORTED:
+            export(survey, map, GALLERY / f"{name}-export")
+
+
+def maps(chosen: list[str]) -> Iterator[tuple[str, groundplan.Map]]:
+    """Names and maps."""
+    if not chosen or SIMULATED in chosen:
+        yield SIMULATED, simulate.warehouse(seed=7, yaw=12.0).map
+    found = sorted((SHARED / "maps").rglob("*.yaml"))
+    if not found and chosen != [SIMULATED]:
         raise SystemExit(f"error: there are no maps in {SHARED / 'maps'}\nhint: GROUNDPLAN_SHARED=DIR make gallery")
-    for path in maps:
+    for path in found:
         name = "-".join(path.relative_to(SHARED / "maps").with_suffix("").parts)
         if chosen and name not in chosen:
             continue
         try:
-            map = groundplan.read(path)
+            yield name, groundplan.read(path)
         except groundplan.MapError:
             continue  # annotations lie beside some maps, as YAML too
-        survey = groundplan.survey(map)
-        draw_survey(survey, map, ROOT / "gallery" / f"{name}.png")
-        if survey.of_kind("corridor"):
-            draw_road_map(survey, map, road_map(survey), ROOT / "gallery" / f"{name}-roads.png")
-        kinds = ("corridor", "junction", "rack", "region")
-        counts = ", ".join(f"{len(survey.of_kind(kind))} {kind}s" for kind in kinds)
-        print(f"{name}: {len(survey.directions)} directions, {len(survey.lines)} lines, {counts}")
+
+
+def export(survey: groundplan.Survey, map: groundplan.Map, out: Path) -> None:
+    """Write every format, and print the drawing and the report."""
+    out.mkdir(parents=True, exist_ok=True)
+    for name, form in FORMATS.items():
+        try:
+            survey.export(out, name, **({"map": map} if form.map != "no" else {}))
+        except groundplan.FormatError as refused:
+            print(f"  {name}: {refused}")
+    (drawing,), (report,) = out.glob("*.dxf"), out.glob("*.report.pdf")
+    offscreen = os.environ | {"QT_QPA_PLATFORM": "offscreen"}
+    if shutil.which("librecad") and shutil.which("pdftoppm"):
+        for words in (
+            ["librecad", "dxf2pdf", "-a", drawing.name],
+            ["pdftoppm", "-r", "150", "-png", "-singlefile", f"{drawing.stem}.pdf", f"{drawing.stem}.dxf"],
+            ["pdftoppm", "-r", "100", "-png", report.name, report.stem],
+        ):
+            subprocess.run(
+                words, cwd=out, env=offscreen, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            )
+    print(f"  wrote {out.relative_to(ROOT)}/")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Make anew what the docs show: the README's picture and formats, and the tables of scores. Run by `make docs`."""
+"""Make anew what the docs show: the pictures, the README's formats, and the tables of scores. Run by `make docs`."""
 
 from __future__ import annotations
 
@@ -9,23 +9,29 @@ from pathlib import Path
 
 import groundplan
 from groundplan.export import FORMATS
-from groundplan.figures import draw_survey
+from groundplan.figures import draw_road_map, draw_survey
+from groundplan.roadmap import road_map
 
 DOCS = Path(__file__).parent
 PROGRAM = Path(sysconfig.get_path("scripts")) / "groundplan"
 SUITES = ("warehouses", "offices", "names", "confidence")
 
 
-def picture() -> None:
-    """The survey of the example, small enough for a README."""
+def pictures() -> None:
+    """The survey of the example and its road map, small enough for a README."""
     from PIL import Image
 
     map = groundplan.read(DOCS.parent / "examples" / "warehouse.yaml")
-    place = draw_survey(groundplan.survey(map), map, DOCS / "survey.png")
-    with Image.open(place) as drawn:
-        drawn.thumbnail((1200, 1200))
-        # The median cut gives small discs the colours of the large areas beside them.
-        drawn.convert("RGB").quantize(256, Image.Quantize.FASTOCTREE).save(place, optimize=True)
+    survey = groundplan.survey(map)
+    roads = road_map(survey, spurs=0.6, map=map)
+    for place in (
+        draw_survey(survey, map, DOCS / "survey.png"),
+        draw_road_map(survey, map, roads, DOCS / "roads.png"),
+    ):
+        with Image.open(place) as drawn:
+            drawn.thumbnail((1200, 1200))
+            # The median cut gives small discs the colours of the large areas beside them.
+            drawn.convert("RGB").quantize(256, Image.Quantize.FASTOCTREE).save(place, optimize=True)
 
 
 def formats() -> None:
@@ -53,7 +59,7 @@ def _between(page: Path, name: str, text: str) -> None:
 
 
 if __name__ == "__main__":
-    picture()
+    pictures()
     formats()
     scores()
-    sys.stderr.write("wrote docs/survey.png, README.md and docs/accuracy.md\n")
+    sys.stderr.write("wrote docs/survey.png, docs/roads.png, README.md and docs/accuracy.md\n")

@@ -44,7 +44,18 @@ def demo() -> groundplan.Survey:
 @cache
 def jones_farms() -> groundplan.Survey:
     """A real office floor; skipped where the real maps are not."""
-    file = SHARED / "maps" / "radish_intel_jones_farms.yaml"
+    return real("radish_intel_jones_farms")
+
+
+@cache
+def nav2_warehouse() -> groundplan.Survey:
+    """The warehouse that Nav2's demos drive in; skipped where the real maps are not."""
+    return real("nav2_warehouse")
+
+
+def real(name: str) -> groundplan.Survey:
+    """The survey of a map that is not ours."""
+    file = SHARED / "maps" / f"{name}.yaml"
     if not file.is_file():
         pytest.skip(f"needs the real maps: no {file}")
     return groundplan.survey(groundplan.read(file), threads=1)
@@ -100,6 +111,7 @@ ODD: dict[str, Callable[[], groundplan.Survey]] = {
 GOOD: dict[str, Callable[[], groundplan.Survey]] = {
     "demo": demo,
     "jones farms": jones_farms,
+    "nav2 warehouse": nav2_warehouse,
     "shifted": shifted,
     "turned": lambda: surveyed("turned_warehouse"),
 }

@@ -117,6 +117,41 @@ def test_no_lane_leads_through_what_stands_in_the_way_and_no_node_is_left_for_it
     assert min(degree(blocked).values()) == 2
 
 
+@pytest.mark.parametrize(("options", "clear"), [({"spurs": 0.6}, 0.4), ({"vehicle_width": 1.2}, 0.6)])
+def test_spurs_and_wide_vehicles_keep_clear_of_what_is_occupied(options: dict[str, float], clear: float) -> None:
+    made = simulate.warehouse(**suite("roadmaps")[5].options)  # the cluttered one
+    roads = road_map(groundplan.survey(made.map, threads=1), map=made.map, **options)  # type: ignore[arg-type]
+    nodes = np.array([node.at for node in roads.nodes])
+    scores = road_scores(nodes, {(lane.start, lane.end) for lane in roads.lanes}, made.truth, made.map)
+    assert scores["lane_clearance_m"] >= clear and scores["lane_elsewhere_m"] == 0
+    assert scores["lane_error_m"] < 0.15
+    if "spurs" in options:
+        spurs = sum(lane.kind == "spur" for lane in roads.lanes)
+        assert 0.8 * len(roads.faces) < spurs < len(roads.faces)  # pallets stand before some
+
+
+def rows(*taken: tuple[float, float, float, float]) -> groundplan.Map:
+    """Four rows of racks, a way across on their left, and on their right a hall 14 m deep; more may stand in it."""
+    pixels = np.full((480, 640), 254, np.uint8)
+    racks = [(3.2, y, 18, y + 2.2) for y in (3.2, 8.6, 14.0, 19.4)]
+    for x0, y0, x1, y1 in ((0, 0, 32, 0.2), (0, 23.8, 32, 24), (0, 0, 0.2, 24), (31.8, 0, 32, 24), *racks, *taken):
+        pixels[480 - round(y1 / 0.05) : 480 - round(y0 / 0.05), round(x0 / 0.05) : round(x1 / 0.05)] = 0
+    return groundplan.from_array(pixels, 0.05)
+
+
+def test_a_lane_along_a_hall_s_side_spares_a_long_way_round_but_leads_through_no_gap_between_racks() -> None:
+    def joined(map: groundplan.Map) -> set[frozenset[str]]:
+        roads = road_map(groundplan.survey(map, threads=1), map=map)
+        aisles = [lane for lane in roads.lanes if lane.kind == "aisle"]
+        named = [{lane.name for lane in aisles if n in (lane.start, lane.end)} for n in range(len(roads.nodes))]
+        return {frozenset(named[lane.start] | named[lane.end]) for lane in roads.lanes if lane.kind == "open"}
+
+    everywhere = {frozenset({f"A{n:02}", f"A{n + 1:02}"}) for n in range(1, 5)}
+    assert joined(rows()) == everywhere
+    # A post of the same row: the racks go on, and what is open before it are empty bays.
+    assert joined(rows((21, 9.6, 21.2, 9.8))) == everywhere - {frozenset({"A02", "A03"})}
+
+
 def test_a_lane_steps_aside_for_what_sticks_out() -> None:
     plain, out = hall(), hall((10, 6.2, 11, 6.68), (14, 6.2, 15, 6.68))
     lanes = [road_map(groundplan.survey(map, threads=1), map=out) for map in (plain, out)]

@@ -8,13 +8,16 @@ import math
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from groundplan.export._places import Place, main_angle, places, square
+import networkx
+
+from groundplan.export._places import Place, main_angle, places
 from groundplan.maps import Map
 from groundplan.roadmap import _centre, _doors, _faces, _lanes, _open
 from groundplan.roadmap._lanes import Way
-from groundplan.roadmap._model import Lane, Node, PickFace, Point, RoadMap, Zone
+from groundplan.roadmap._model import Lane, Node, PickFace, Point, RoadMap
 from groundplan.roadmap._pixels import Pixels
 from groundplan.roadmap._rules import Rule, ruled
+from groundplan.roadmap._zones import zones
 
 if TYPE_CHECKING:
     from groundplan.survey import Survey
@@ -88,19 +91,28 @@ class _Builder:
             way = self.ways[corridor]
             for number, foot in enumerate(row, 1):
                 id, name = f"{way.place.id}.P{number:02}", f"{way.place.name} P{number:02}"
-                lengths = [abs(bay.left) - (spurs or 0.0) for bay in foot.bays]
-                spurred = spurs is not None and max(lengths) >= _faces.SHORTEST_SPUR_M
+                ends = [self._spur(way, foot.along, bay.left, spurs) for bay in foot.bays]
+                spurred = any(end is not None for end in ends)
                 stop = self._node(id, "foot" if spurred else "pick", way.point(foot.along), name)
                 way.add(way.point(foot.along), stop)
-                for bay, length in zip(foot.bays, lengths, strict=True):
+                for bay, at in zip(foot.bays, ends, strict=True):
                     side = math.copysign(1.0, bay.left)
                     node, rack = stop, self.places[bay.rack]
-                    if spurred and length >= _faces.SHORTEST_SPUR_M:
-                        at = way.point(foot.along, side * length)
+                    if at is not None:
                         node = self._node(f"{bay.id}.stop", "pick", at, bay.id, label=bay.rack)
                         self._lane(f"{bay.id}.spur", stop, node, "spur", rack, bay.width / 2, bay.width / 2)
                     heading = math.atan2(side * way.along[0], -side * way.along[1])
                     self.picks.append(PickFace(bay.id, bay.at, round(heading, 9), node, bay.rack, bay.width))
+
+    def _spur(self, way: Way, along: float, left: float, before: float | None) -> Point | None:
+        """Where a spur to a face ends; None where there is none, or something stands in its way."""
+        if before is None or abs(left) - before < _faces.SHORTEST_SPUR_M:
+            return None
+        end = way.point(along, math.copysign(abs(left) - before, left))
+        if self.pixels is None:
+            return end
+        keep = min(self.pixels.keep(math.inf, self.vehicle), max(before - 2 * self.pixels.half, 0.0))
+        return end if self.pixels.open([way.point(along), end], keep) else None
 
     def doors(self, regions: _doors.Regions) -> None:
         """A node in each door, joined to the lane or the room on either side."""
@@ -154,7 +166,7 @@ class _Builder:
                     if ahead is not None:
                         way.stops[side] = (ahead, stop)
                         self.nodes[stop] = dataclasses.replace(self.nodes[stop], at=way.point(ahead))
-        net = _open.Net(self.lanes, self.ways)
+        net = _open.Net(self.nodes, self.lanes, self.ways, self._leads)
         found = list(_open.links(regions, self.ways, self.nodes, net, main_angle(self.survey)))
         for number, link in enumerate(found, 1):
             if 2 * link.half < (self.vehicle or 0.0):
@@ -213,33 +225,26 @@ class _Builder:
                 if one == other:
                     self.ways[one].stops = [kept for kept in self.ways[one].stops if kept[1] != stop]
 
+    def _drop_loose(self) -> None:
+        """Of a lane that is blocked on both sides nothing is left: no vehicle comes there."""
+        graph: networkx.Graph[int] = networkx.Graph((lane.start, lane.end) for lane in self.lanes)
+        loose: set[int] = set()
+        for part in networkx.connected_components(graph):
+            if all(self.nodes[node].kind in ("pick", "foot") for node in part):
+                loose |= part
+        self.lanes = [lane for lane in self.lanes if lane.start not in loose]
+
     def road_map(self) -> RoadMap:
         """What has come together: nodes that a lane joins, and the zones."""
+        self._drop_loose()
         joined = {end for lane in self.lanes for end in (lane.start, lane.end)}
         kept = [n for n in range(len(self.nodes)) if n in joined]
         place = {old: new for new, old in enumerate(kept)}
         lanes = [dataclasses.replace(lane, start=place[lane.start], end=place[lane.end]) for lane in self.lanes]
         faces = [PickFace(f.id, f.at, f.heading, place[f.node], f.rack, f.width) for f in self.picks if f.node in place]
-        return RoadMap([self.nodes[n] for n in kept], lanes, faces, list(self._zones()))
-
-    def _zones(self) -> list[Zone]:
-        found = []
-        angle = main_angle(self.survey)
-        for place in self.places:
-            if place.kind == "rack" and place.shape is not None:
-                found.append(Zone(f"{place.id}.keep", "keep-out", place.name, _ring(place), place.label))
-            elif place.kind == "pillar" and place.width:
-                ring = square(place.centre, place.width, angle)
-                found.append(Zone(f"{place.id}.keep", "keep-out", place.name, ring, place.label))
-            elif place.kind == "corridor" and place.shape is not None and place.label in self.ways:
-                speed, _ = ruled(self.rules, place.name)
-                if speed is not None:
-                    found.append(Zone(f"{place.id}.speed", "speed", place.name, _ring(place), place.label, speed))
-        return found
-
-
-def _ring(place: Place) -> list[Point]:
-    import shapely
-
-    ring = shapely.orient_polygons(place.shape).exterior.coords[:-1]
-    return [(float(x), float(y)) for x, y in ring]
+        return RoadMap(
+            [self.nodes[n] for n in kept],
+            lanes,
+            faces,
+            list(zones(self.places, self.ways, self.rules, main_angle(self.survey))),
+        )

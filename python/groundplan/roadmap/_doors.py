@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import shapely
 
 from groundplan.roadmap._lanes import Way
@@ -125,6 +126,31 @@ class Regions:
             line = shapely.LineString([a, b])
             return self.pixels.free(a, b) and self.pixels.open([a, b]) and not line.intersects(self.racks)
         return any(self.open(region, [a, b]) for region in self.within)
+
+    def is_hall(self, region: int, points: list[Point], outwards: Point, depth: float) -> bool:
+        """Whether all that lies beyond a straight line, as deep as an aisle is wide, is open but for pillars.
+
+        Else the racks go on there, and what is open before them are empty bays.
+        """
+        (ax, ay), (bx, by) = points
+        length = math.dist(*points)
+        if not length or abs((bx - ax) * outwards[0] + (by - ay) * outwards[1]) > 0.5 * length:
+            return False
+        far = [(px + depth * outwards[0], py + depth * outwards[1]) for px, py in points[::-1]]
+        beyond = shapely.Polygon([*points, *far])
+        if not self.places[region].shape.buffer(THRESHOLD_M).covers(beyond) or beyond.intersects(self.racks):
+            return False
+        if self.pixels is None:
+            return bool(beyond.distance(self.walls) > 0)
+        a, b = ((px + depth / 2 * outwards[0], py + depth / 2 * outwards[1]) for px, py in points)
+        s, d = self.pixels.beside(a, b, depth / 2)
+        inside = (s > 0) & (s < length)
+        u, v = (bx - ax) / length, (by - ay) / length
+        x, y = a[0] + s * u - d * v, a[1] + s * v + d * u
+        for pillar in self.places:
+            if pillar.kind == "pillar" and pillar.width:
+                inside &= np.hypot(x - pillar.centre[0], y - pillar.centre[1]) > pillar.width
+        return not inside.any()
 
     def outside(self, region: int, at: Point) -> bool:
         """Whether a point lies clearly outside a region."""

@@ -75,6 +75,11 @@ class Way:
             return None
         return shapely.LineString([self.point(self.stops[0][0]), self.point(self.stops[-1][0])])
 
+    def outwards(self, along: float) -> Point:
+        """The direction in which it ends at that end of it which is nearer to a place."""
+        sign = 1.0 if along > self.length / 2 else -1.0
+        return sign * self.along[0], sign * self.along[1]
+
     def lies_on_a_lane(self, along: float) -> bool:
         """Whether there is a lane at that place."""
         return len(self.stops) > 1 and self.stops[0][0] <= along <= self.stops[-1][0]

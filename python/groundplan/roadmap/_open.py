@@ -1,14 +1,14 @@
 """Lanes through open space: from the end of an aisle straight on, or to the next lane that can be seen from it.
 
-Aisles often end in a hall that is too wide to be a corridor; what lies apart in one region is joined there, by as
-little as will do.
+Aisles often end in a hall that is too wide to be a corridor; what lies apart in one region is joined there by as little
+as will do, and along the hall's side runs a lane that spares an aisle's end a long way round.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,6 +20,10 @@ from groundplan.roadmap._model import Lane, Node, Point
 
 #: An aisle that ends in the open goes on so far beyond its racks that a lane across it clears them, metres.
 BEYOND_M = 1.0
+
+
+#: A link along a hall's side is worth having where the way round is so many times as long.
+SPARED = 3.0
 
 
 @dataclass(frozen=True)
@@ -34,24 +38,37 @@ class Link:
 
 
 class Net:
-    """Lanes as a graph that grows, for asking whether they lead from one place to another."""
+    """Lanes as a graph that grows, for asking whether and how far they lead from one place to another."""
 
-    def __init__(self, lanes: list[Lane], ways: dict[int, Way]) -> None:
+    def __init__(
+        self, nodes: list[Node], lanes: list[Lane], ways: dict[int, Way], leads: Callable[[Way, int, int], bool]
+    ) -> None:
         self.graph: networkx.Graph[Any] = networkx.Graph()
         self.ways = ways
         for lane in lanes:
-            self.graph.add_edge(lane.start, lane.end)
+            self.graph.add_edge(lane.start, lane.end, length=math.dist(nodes[lane.start].at, nodes[lane.end].at))
         for way in ways.values():
             self.graph.add_nodes_from(stop for _, stop in way.stops)
-            networkx.add_path(self.graph, [stop for _, stop in way.stops])
+            for (here, a), (there, b) in itertools.pairwise(way.stops):
+                if leads(way, a, b):
+                    self.graph.add_edge(a, b, length=there - here)
 
-    def reached(self, stop: int, corridor: int) -> bool:
-        """Whether lanes lead from a stop to a corridor."""
-        return bool(networkx.has_path(self.graph, stop, self.ways[corridor].stops[0][1]))
+    def length(self, stop: int, corridor: int, along: float) -> float:
+        """How far it is from a stop to about a place on a corridor; infinite without lanes."""
+        place, node = self._nearest(corridor, along)
+        try:
+            way: float = networkx.dijkstra_path_length(self.graph, stop, node, weight="length")
+        except networkx.NetworkXNoPath:
+            return math.inf
+        return way + abs(place - along)
 
-    def link(self, stop: int, corridor: int) -> None:
+    def link(self, stop: int, corridor: int, along: float, length: float) -> None:
         """Add a link."""
-        self.graph.add_edge(stop, self.ways[corridor].stops[0][1])
+        place, node = self._nearest(corridor, along)
+        self.graph.add_edge(stop, node, length=length + abs(place - along))
+
+    def _nearest(self, corridor: int, along: float) -> tuple[float, int]:
+        return min(self.ways[corridor].stops, key=lambda stop: abs(stop[0] - along))
 
 
 def straight_on(regions: Regions, ways: dict[int, Way], corridor: int, far: bool) -> tuple[int, float] | None:
@@ -79,14 +96,17 @@ def straight_on(regions: Regions, ways: dict[int, Way], corridor: int, far: bool
 
 
 def links(regions: Regions, ways: dict[int, Way], nodes: list[Node], net: Net, angle: float) -> Iterator[Link]:
-    """The shortest links that join what lies apart in a region; turns are square to `angle`."""
+    """The shortest links that join what lies apart in a region, and those along a hall's side that spare a long way.
+
+    Turns are square to `angle`.
+    """
     for region, corridors in regions.within.items():
-        options: list[tuple[float, int, int, float, Point | None, list[Point]]] = []
+        options: list[tuple[float, int, int, float, Point | None, list[Point], Point]] = []
         for corridor, other in itertools.permutations(corridors, 2):
             if not (ways[corridor].stops and ways[other].stops):
                 continue
             for along, stop in sorted({ways[corridor].stops[0], ways[corridor].stops[-1]}):
-                at = ways[corridor].point(along)
+                at, outwards = ways[corridor].point(along), ways[corridor].outwards(along)
                 if regions.outside(region, at):
                     continue
                 for target in _targets(ways[other], at):
@@ -95,12 +115,15 @@ def links(regions: Regions, ways: dict[int, Way], nodes: list[Node], net: Net, a
                         points = [at, *([] if turn is None else [turn]), to]
                         length = math.fsum(itertools.starmap(math.dist, itertools.pairwise(points)))
                         cost = length + (0.0 if turn is None else TURN_M)
-                        options.append((cost, stop, other, target, turn, points))
+                        options.append((cost, stop, other, target, turn, points, outwards))
         options.sort(key=lambda option: option[:4])
-        for _, stop, other, target, turn, points in options:
-            if not net.reached(stop, other) and regions.open(region, points):
-                net.link(stop, other)
-                yield Link(stop, other, target, turn, regions.beside(region, points))
+        for cost, stop, other, target, turn, points, outwards in options:
+            round = net.length(stop, other, target)
+            if round > SPARED * cost and regions.open(region, points):
+                depth = ways[other].width
+                if round == math.inf or (turn is None and regions.is_hall(region, points, outwards, depth)):
+                    net.link(stop, other, target, cost)
+                    yield Link(stop, other, target, turn, regions.beside(region, points))
 
 
 def goes_on(regions: Regions, way: Way, far: bool) -> float | None:
