@@ -14,7 +14,7 @@ from _program import call, files, write_map
 from conftest import ROOT, SHARED
 
 import groundplan
-from groundplan import GroundplanError, ParameterError
+from groundplan import GroundplanError, ParameterError, simulate
 from groundplan.export import FORMATS, OPTIONS, export
 from groundplan.export._dates import moment
 
@@ -194,6 +194,18 @@ def test_a_format_that_refuses_stops_no_other_and_is_told(tmp_path: Path, capsys
     assert later.code == 3 and later.out.split() == [str(tmp_path / "later" / "open.places.csv")]
     alone = call(capsys, "export", tmp_path / "out", "--to", "straight")
     assert alone.code == 3 and "error: the map has no direction" in alone.err and "refused" not in alone.err
+
+
+def test_what_stands_in_the_way_of_lanes_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made = simulate.warehouse(seed=3, width=28, depth=22).write(tmp_path)
+    wide = ("--vehicle-width", "2.6")
+    assert call(capsys, "survey", made, "-o", tmp_path / "out", "-q").code == 0
+    ran = call(capsys, "export", tmp_path / "out", "--to", "lif", "-o", tmp_path / "wide", *wide)
+    assert ran.code == 0 and "warning: lanes are left out where something stands in the way: A0" in ran.err
+    ran = call(capsys, "export", tmp_path / "out", "--to", "lif", "-o", tmp_path / "wider", "--vehicle-width", "9")
+    assert ran.code == 0 and "warning: the road map is empty" in ran.err
+    ran = call(capsys, "export", tmp_path / "warehouse.yaml", "--to", "lif")
+    assert ran.code == 3 and "hint: a map is surveyed first: groundplan survey" in ran.err
 
 
 def test_of_all_formats_those_are_written_whose_libraries_and_pixels_are_there(

@@ -114,6 +114,8 @@ def test_no_lane_leads_through_what_stands_in_the_way_and_no_node_is_left_for_it
     assert {lane.name for lane in open.lanes} == {"A01", "A02", "A03", "C01", "C02"}
     assert {lane.name for lane in blocked.lanes} == {"A01", "A03", "C01", "C02"}
     assert {node.kind for node in blocked.nodes} == {"junction"} and len(blocked.nodes) == 4
+    assert [piece.id for piece in blocked.blocked] == ["A02.1"] and not open.blocked
+    assert shapely.box(11.5, 6.6, 12.5, 7.4).contains(shapely.Point(blocked.blocked[0].at))
     assert min(degree(blocked).values()) == 2
 
 

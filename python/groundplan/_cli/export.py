@@ -114,6 +114,7 @@ def run(arguments: argparse.Namespace) -> None:
         out = arguments.out or f"{file.parent / 'export'}{os.sep}"
         written, refused = write(survey, arguments.to, out, given, status)
     if not arguments.quiet:
+        tell_blocked(survey, [form for form in arguments.to if form.name not in refused], given)
         terminal.put("".join(f"{file}\n" for file in written))
     tell(refused)
 
@@ -125,8 +126,7 @@ def _map(arguments: argparse.Namespace, survey: Survey, file: Path, given: dict[
     from groundplan.maps import read
 
     # Of the graphs, the road map's alone has a use for pixels.
-    places = given.get("graph", "places") != "roads"
-    uses = {"no" if places and "graph" in form.options else form.map for form in arguments.to}
+    uses = {"no" if _is_of_places(form, given) else form.map for form in arguments.to}
     if uses == {"no"}:
         return None
     try:
@@ -184,6 +184,32 @@ def write(
                 raise
             refused[form.name] = fault
     return written, refused
+
+
+#: So many pieces of lane are named, and the others counted.
+NAMED = 4
+
+
+def tell_blocked(survey: Survey, forms: list[Format], given: dict[str, Any]) -> None:
+    """Say what the road map leaves out because something stands in its way, or that it is empty."""
+    taking = [form for form in forms if "spurs" in form.options and not _is_of_places(form, given)]
+    if not taking:
+        return
+    from groundplan.export._formats import OF_ROADS, ROADS
+    from groundplan.roadmap import road_map
+
+    roads = road_map(survey, **{name: given[name] for name in (*ROADS, "map") if name in given})
+    if not roads.lanes and any(form.name in OF_ROADS for form in taking):
+        terminal.say("warning", "the road map is empty: no corridor, and no door between regions, fits the vehicle")
+    if roads.blocked:
+        named = [f"{piece.id} at ({piece.at[0]:.2f}, {piece.at[1]:.2f})" for piece in roads.blocked[:NAMED]]
+        more = [f"{len(roads.blocked) - NAMED} more"] if len(roads.blocked) > NAMED else []
+        terminal.say("warning", f"lanes are left out where something stands in the way: {', '.join(named + more)}")
+
+
+def _is_of_places(form: Format, given: dict[str, Any]) -> bool:
+    """Whether a format of graphs writes another one than the road map's."""
+    return "graph" in form.options and given.get("graph") != "roads"
 
 
 def _own(form: Format, given: dict[str, Any]) -> dict[str, Any]:

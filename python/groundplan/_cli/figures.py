@@ -86,8 +86,12 @@ def open_survey(given: Path) -> tuple[Path, Survey]:
     try:
         return file, Survey.read(file)
     except FormatError as fault:
-        named = fault if fault.code == "survey.read" else FormatError(fault.code, f"{file}: {fault}", fault.hint)
-        raise named from fault
+        if fault.code == "survey.read":
+            raise
+        hint = fault.hint
+        if fault.code == "survey.json" and file.suffix != ".json":
+            hint = f"a map is surveyed first: groundplan survey {file}"
+        raise FormatError(fault.code, f"{file}: {fault}", hint) from fault
 
 
 def find_map(survey: Survey, path: Path) -> str:

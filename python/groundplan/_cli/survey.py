@@ -179,6 +179,7 @@ def run(arguments: argparse.Namespace) -> None:
             terminal.put(summary(found))
         for warning in found.warnings:
             terminal.say("warning", f"{warning.message} [{warning.code}]")
+        export.tell_blocked(found, [form for form in arguments.export if form.name not in refused], {"map": map})
         for file in written:
             terminal.say("wrote", file)
     export.tell(refused)

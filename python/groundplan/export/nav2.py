@@ -33,7 +33,7 @@ def write(survey: Survey, path: Path, **roads: Any) -> list[Path]:
     """
     made = road_map(survey, **roads)
     if not made.lanes:
-        hint = "a road map needs corridors, or doors between regions"
+        hint = "a road map needs corridors, or doors between regions, as wide as the vehicle"
         raise FormatError("export.empty", "the survey has no lanes, and the Route Server loads no empty graph", hint)
     farthest = max(abs(value) for node in made.nodes for value in node.at)
     if farthest > FARTHEST_M:

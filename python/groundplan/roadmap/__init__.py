@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING, Any
 
 from groundplan._errors import ParameterError
 from groundplan._extras import needed
-from groundplan.roadmap._model import Directed, Lane, Node, PickFace, RoadMap, Zone
+from groundplan.roadmap._model import Blocked, Directed, Lane, Node, PickFace, RoadMap, Zone
 
 if TYPE_CHECKING:
     from groundplan.maps import Map
     from groundplan.survey import Survey
 
-__all__ = ["Directed", "Lane", "Node", "PickFace", "RoadMap", "Zone", "road_map"]
+__all__ = ["Blocked", "Directed", "Lane", "Node", "PickFace", "RoadMap", "Zone", "road_map"]
 
 
 def road_map(

@@ -14,8 +14,8 @@ from groundplan.export._places import Place, main_angle, places
 from groundplan.maps import Map
 from groundplan.roadmap import _centre, _doors, _faces, _lanes, _open
 from groundplan.roadmap._lanes import Way
-from groundplan.roadmap._model import Lane, Node, PickFace, Point, RoadMap
-from groundplan.roadmap._pixels import Pixels
+from groundplan.roadmap._model import Blocked, Lane, Node, PickFace, Point, RoadMap
+from groundplan.roadmap._pixels import CLEAR_M, Pixels
 from groundplan.roadmap._rules import Rule, ruled
 from groundplan.roadmap._zones import zones
 
@@ -54,6 +54,7 @@ class _Builder:
         self.nodes: list[Node] = []
         self.lanes: list[Lane] = []
         self.picks: list[PickFace] = []
+        self.blocked: list[Blocked] = []
 
     def _open(self, place: Place) -> bool:
         return ruled(self.rules, place.name)[1] != "closed"
@@ -197,6 +198,7 @@ class _Builder:
         for way in self.ways.values():
             for number, ((_, a), (_, b)) in enumerate(itertools.pairwise(way.stops), 1):
                 if not self._leads(way, a, b):
+                    self._block(f"{way.place.id}.{number}", a, b)
                     continue
                 off = [way.aside + way.place_of(self.nodes[n].at)[1] for n in (a, b)]
                 left, right = way.width / 2 - max(*off, 0.0), way.width / 2 + min(*off, 0.0)
@@ -207,6 +209,11 @@ class _Builder:
         if self.pixels is None:
             return True
         return self.pixels.open([self.nodes[n].at for n in (a, b)], self.pixels.keep(way.width, self.vehicle))
+
+    def _block(self, id: str, a: int, b: int) -> None:
+        if self.pixels is not None:
+            reach = max(self.vehicle or 0.0, 2 * CLEAR_M)
+            self.blocked.append(Blocked(id, self.pixels.nearest(self.nodes[a].at, self.nodes[b].at, reach)))
 
     def passed(self) -> None:
         """Junctions that only one corridor's lane runs through, because the others' are blocked, mean nothing."""
@@ -242,9 +249,5 @@ class _Builder:
         place = {old: new for new, old in enumerate(kept)}
         lanes = [dataclasses.replace(lane, start=place[lane.start], end=place[lane.end]) for lane in self.lanes]
         faces = [PickFace(f.id, f.at, f.heading, place[f.node], f.rack, f.width) for f in self.picks if f.node in place]
-        return RoadMap(
-            [self.nodes[n] for n in kept],
-            lanes,
-            faces,
-            list(zones(self.places, self.ways, self.rules, main_angle(self.survey))),
-        )
+        found = list(zones(self.places, self.ways, self.rules, main_angle(self.survey)))
+        return RoadMap([self.nodes[n] for n in kept], lanes, faces, found, self.blocked)

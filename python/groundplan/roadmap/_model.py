@@ -138,13 +138,22 @@ class Directed:
 
 
 @dataclass(frozen=True)
+class Blocked:
+    """A piece of lane that is left out, and the occupied pixel `at` which something stands in its way."""
+
+    id: str
+    at: Point
+
+
+@dataclass(frozen=True)
 class RoadMap:
-    """Nodes, lanes between them, pick faces and zones."""
+    """Nodes, lanes between them, pick faces and zones; and the pieces of lane that something stands in the way of."""
 
     nodes: list[Node] = field(default_factory=list)
     lanes: list[Lane] = field(default_factory=list)
     faces: list[PickFace] = field(default_factory=list)
     zones: list[Zone] = field(default_factory=list)
+    blocked: list[Blocked] = field(default_factory=list)
 
     def length(self, lane: Lane) -> float:
         """How long a lane is."""

@@ -59,6 +59,14 @@ class Pixels:
             return CLEAR_M
         return max(vehicle / 2, min(CLEAR_M, width / 2 - 2 * self.half))
 
+    def nearest(self, a: Point, b: Point, reach: float) -> Point:
+        """The occupied pixel nearest to a line, of those within a reach."""
+        s, d = self.beside(a, b, reach)
+        length = math.dist(a, b)
+        n = int(np.argmin(np.hypot(d, np.maximum(np.maximum(-s, s - length), 0.0))))
+        u, v = (b[0] - a[0]) / length, (b[1] - a[1]) / length
+        return float(a[0] + s[n] * u - d[n] * v), float(a[1] + s[n] * v + d[n] * u)
+
     def open(self, points: Sequence[Point], keep: float = CLEAR_M) -> bool:
         """Whether a line keeps so far from every occupied pixel."""
         return self.clearance(points, 2 * keep) >= keep
