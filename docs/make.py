@@ -14,7 +14,7 @@ from groundplan.roadmap import road_map
 
 DOCS = Path(__file__).parent
 PROGRAM = Path(sysconfig.get_path("scripts")) / "groundplan"
-SUITES = ("warehouses", "offices", "names", "confidence")
+SUITES = ("warehouses", "offices", "roadmaps", "names", "confidence")
 
 
 def pictures() -> None:
