@@ -159,6 +159,7 @@ class _Builder:
             for side in (0, -1):
                 if way.stops and self.nodes[way.stops[side][1]].kind == "end":
                     self._straight_on(regions, corridor, side)
+        self._corners(regions)
         for way in self.ways.values():
             for side in (0, -1):
                 stop = way.stops[side][1]
@@ -181,6 +182,29 @@ class _Builder:
             for node in (link.stop, end):
                 if self.nodes[node].kind == "end":  # the way goes on
                     self.nodes[node] = dataclasses.replace(self.nodes[node], kind="turn")
+
+    def _corners(self, regions: _doors.Regions) -> None:
+        """Lead a corridor on from its last junction to the end of the next one ahead: clutter may hide a corner."""
+        for corridor, way in self.ways.items():
+            for side in (0, -1):
+                if not way.stops or self.nodes[way.stops[side][1]].kind != "junction":
+                    continue
+                ahead = _open.straight_on(regions, self.ways, corridor, side == -1)
+                if ahead is not None:
+                    self._corner(way, self.ways[ahead[0]], ahead[1])
+
+    def _corner(self, way: Way, other: Way, along: float) -> None:
+        """Move the end of another corridor's lane to where a corridor's lane meets it, if it is near."""
+        for place, stop in (other.stops[0], other.stops[-1]):
+            if self.nodes[stop].kind == "end" and abs(place - along) < other.width:
+                at = other.point(along)
+                self.nodes[stop] = dataclasses.replace(
+                    self.nodes[stop], kind="turn", at=(round(at[0], 6), round(at[1], 6))
+                )
+                other.stops.remove((place, stop))
+                for both in (way, other):
+                    both.add(at, stop)
+                return
 
     def _straight_on(self, regions: _doors.Regions, corridor: int, side: int) -> None:
         """Lead a corridor's lane on to the next one ahead, where the way is free; its end is none then."""

@@ -87,7 +87,7 @@ def straight_on(regions: Regions, ways: dict[int, Way], corridor: int, far: bool
                 continue
         ahead = (way.place_of(at)[0] - last) * (1 if far else -1)
         along, _ = lane.place_of(at)
-        if ahead > 0 and lane.stops[0][0] - ONE_NODE_M <= along <= lane.stops[-1][0] + ONE_NODE_M:
+        if ahead > ONE_NODE_M and lane.stops[0][0] - ONE_NODE_M <= along <= lane.stops[-1][0] + ONE_NODE_M:
             found.append((ahead, other, along))
     if not found:
         return None
