@@ -101,9 +101,10 @@ pub(crate) struct Sharpness {
     xs: Vec<f32>,
     ys: Vec<f32>,
     size: [f64; 2],
-    bins: Vec<u32>,
-    once: Vec<f32>,
-    twice: Vec<f32>,
+    /// How many pixels lie between a bin and the next in the upper half, and the sum of their parts in the lower.
+    bins: Vec<u64>,
+    /// Sums of the sums of the bins.
+    sums: Vec<u32>,
 }
 
 /// From here on a float holds whole numbers only. More than any map has bins.
@@ -124,8 +125,7 @@ impl Sharpness {
             ys: axis(1),
             size: [frame.width as f64, frame.height as f64],
             bins: Vec::new(),
-            once: Vec::new(),
-            twice: Vec::new(),
+            sums: Vec::new(),
         }
     }
 
@@ -148,27 +148,33 @@ impl Sharpness {
                 // Rounded: of such a float the last bits are the whole number.
                 *place = ((x * nx + y * ny - low) * FRACTIONS as f32 + WHOLE).to_bits() & (WHOLE as u32 - 1);
             }
-            // Each between the two nearest bins.
             for &place in &places[..xs.len()] {
-                let (bin, part) = (place / FRACTIONS, place % FRACTIONS);
-                self.bins[bin as usize] += FRACTIONS - part;
-                self.bins[bin as usize + 1] += part;
+                self.bins[(place / FRACTIONS) as usize] += 1 << u32::BITS | u64::from(place % FRACTIONS);
             }
         }
-        smooth::<WIDTH, u32>(&self.bins, &mut self.once, |bin| bin as f32);
-        smooth::<WIDTH, f32>(&self.once, &mut self.twice, |bin| bin);
-        // A few at a time, that floats lose nothing to speak of.
-        let energy = |part: &[f32]| f64::from(part.iter().map(|value| value * value).sum::<f32>());
-        self.twice.chunks(CHUNK).map(energy).sum()
+        // Each pixel is between the two nearest bins. Smoothed twice: of their sums' sums the second differences.
+        self.sums.clear();
+        self.sums.extend([0, 0]);
+        let (mut part_before, mut sum, mut sums) = (0u32, 0u32, 0u32);
+        self.sums.extend(self.bins.iter().map(|&bin| {
+            let (count, part) = ((bin >> u32::BITS) as u32, bin as u32);
+            sum = sum.wrapping_add(FRACTIONS * count - part + part_before);
+            part_before = part;
+            sums = sums.wrapping_add(sum);
+            sums
+        }));
+        energy(&self.sums[..self.bins.len() + 2], WIDTH)
     }
 }
 
-/// Sums over `WIDTH` neighbouring bins.
-fn smooth<const WIDTH: usize, T: Copy>(bins: &[T], out: &mut Vec<f32>, value: impl Fn(T) -> f32) {
-    out.clear();
-    out.extend(bins.windows(WIDTH).map(|window| {
-        let window: &[T; WIDTH] =
-            window.try_into().unwrap_or_else(|_| unreachable!("a window is as wide as asked for"));
-        window.iter().map(|&bin| value(bin)).sum::<f32>()
-    }));
+/// The sum of the squares of the second differences over `width`.
+fn energy(sums: &[u32], width: usize) -> f64 {
+    let count = sums.len() - 2 * width;
+    let (low, middle, high) = (&sums[..count], &sums[width..width + count], &sums[2 * width..]);
+    let square = |((low, middle), high): ((&u32, &u32), &u32)| {
+        let value = u64::from(high.wrapping_sub(*middle).wrapping_sub(middle.wrapping_sub(*low)));
+        value * value
+    };
+    let all = low.chunks(CHUNK).zip(middle.chunks(CHUNK)).zip(high.chunks(CHUNK));
+    all.map(|((low, middle), high)| low.iter().zip(middle).zip(high).map(square).sum::<u64>() as f64).sum()
 }

@@ -122,35 +122,30 @@ fn squared(heights: &[u32], width: usize, threads: usize) -> Vec<Vec<u32>> {
     })
 }
 
-/// The lower envelope of the parabolas over some heights.
+/// The lower envelope of the parabolas over some heights; `seats` is room for the places of those that are in it, and
+/// what each is at zero.
 fn envelope(heights: &[u32], squared: &mut [u32], seats: &mut Vec<(i64, i64)>) {
-    let height = |x: i64| i64::from(heights[x as usize]).pow(2);
-    let distance = |x: i64, seat: i64| (x - seat) * (x - seat) + height(seat);
     seats.clear();
-    seats.push((0, 0));
-    let count = heights.len() as i64;
-    for x in 1..count {
-        while let Some(&(seat, start)) = seats.last() {
-            if distance(start, seat) <= distance(start, x) {
-                // Exact: the numbers are whole and small.
-                let over = x * x - seat * seat + height(x) - height(seat);
-                let meet = if over < 0 { 0 } else { (over as f64 / (2 * (x - seat)) as f64) as i64 + 1 };
-                if meet < count {
-                    seats.push((x, meet));
-                }
-                break;
-            }
+    for (x, &height) in heights.iter().enumerate() {
+        let (x, height) = (x as i64, i64::from(height));
+        let own = (x, x * x + height * height);
+        // One is in it as long as it is below both its neighbours where they meet.
+        while let [.., before, last] = seats[..]
+            && (last.1 - before.1) * (own.0 - last.0) >= (own.1 - last.1) * (last.0 - before.0)
+        {
             seats.pop();
         }
-        if seats.is_empty() {
-            seats.push((x, 0));
-        }
+        seats.push(own);
     }
-    let mut end = count;
-    while let Some((seat, start)) = seats.pop() {
-        for x in start..end {
-            squared[x as usize] = distance(x, seat) as u32;
+    let mut seats = seats.iter();
+    let at = |&(seat, zero): &(i64, i64), x: i64| zero - 2 * seat * x;
+    let Some(mut own) = seats.next() else { return };
+    let mut next = seats.next();
+    for (x, to) in squared.iter_mut().enumerate() {
+        let x = x as i64;
+        while let Some(after) = next.filter(|after| at(after, x) < at(own, x)) {
+            (own, next) = (after, seats.next());
         }
-        end = end.min(start);
+        *to = (at(own, x) + x * x) as u32;
     }
 }

@@ -58,11 +58,10 @@ impl Window<'_> {
         let Self { clearance, width } = *self;
         let basins = self.basins();
         let mut borders: Vec<(u32, u32, usize)> = Vec::new();
-        for pixel in (0..basins.len()).filter(|&pixel| basins[pixel] != 0) {
-            for beside in [pixel + 1, pixel + width] {
-                let (a, b) = (basins[pixel], basins[beside]);
-                if b != 0 && a != b {
-                    borders.push((a.min(b), a.max(b), if a < b { pixel } else { beside }));
+        for step in [1, width] {
+            for (pixel, (&a, &b)) in basins.iter().zip(&basins[step..]).enumerate() {
+                if a != b && a != 0 && b != 0 {
+                    borders.push((a.min(b), a.max(b), if a < b { pixel } else { pixel + step }));
                 }
             }
         }
@@ -86,12 +85,20 @@ impl Window<'_> {
         let mut basins = vec![0u32; clearance.len()];
         for pixel in self.by_clearance() {
             let pixel = pixel as usize;
+            let around = self.around(pixel).map(|beside| basins[beside]);
+            // Mostly all are of one.
+            let most = around.into_iter().fold(0, u32::max);
+            let others: u32 = around.iter().map(|&basin| u32::from(basin != 0 && basin != most)).sum();
+            if others == 0 && most != 0 {
+                basins[pixel] = sets.of(most);
+                continue;
+            }
             let mut here = 0;
-            for beside in self.around(pixel) {
-                if basins[beside] == 0 || basins[beside] == here {
+            for basin in around {
+                if basin == 0 || basin == here {
                     continue;
                 }
-                let other = sets.of(basins[beside]);
+                let other = sets.of(basin);
                 if here == 0 || here == other {
                     here = other;
                     continue;
@@ -109,8 +116,9 @@ impl Window<'_> {
             }
             basins[pixel] = here;
         }
+        let roots: Vec<u32> = (0..tops.len() as u32).map(|basin| sets.of(basin)).collect();
         for basin in &mut basins {
-            *basin = sets.of(*basin);
+            *basin = roots[*basin as usize];
         }
         basins
     }
