@@ -133,6 +133,15 @@ def test_survey_writes_its_files_and_prints_a_table(tmp_path: Path, capsys: Capt
     ]
 
 
+def test_without_a_picture_the_same_survey_is_all_that_is_written(tmp_path: Path, capsys: Capture) -> None:
+    write_map(tmp_path)
+    call(capsys, "survey", "hall.yaml", "-o", "drawn")
+    ran = call(capsys, "survey", "hall.yaml", "-o", "out", "--no-picture")
+    assert ran.code == 0 and ran.err.splitlines()[-1] == f"wrote: {os.path.join('out', 'survey.json')}"
+    assert files(tmp_path / "out") == {"survey.json"}
+    assert (tmp_path / "out/survey.json").read_bytes() == (tmp_path / "drawn/survey.json").read_bytes()
+
+
 def test_a_written_survey_says_where_its_map_is_and_is_what_python_makes(tmp_path: Path, capsys: Capture) -> None:
     yaml = write_map(tmp_path)
     call(capsys, "survey", "hall.yaml", "-o", "out")

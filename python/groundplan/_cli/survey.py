@@ -36,7 +36,9 @@ def fill(own: argparse.ArgumentParser) -> None:
         type=place,
         help="where survey.json and survey.png go (default: the map's name with -survey, in the current directory)",
     )
-    own.add_argument("--figures", action="store_true", help="draw the paper's figures 2 to 9 into DIR/figures too")
+    drawn = own.add_mutually_exclusive_group()
+    drawn.add_argument("--figures", action="store_true", help="draw the paper's figures 2 to 9 into DIR/figures too")
+    drawn.add_argument("--no-picture", action="store_true", help="write no survey.png, which takes longest")
     own.add_argument(
         "--export",
         metavar="LIST",
@@ -164,7 +166,8 @@ def run(arguments: argparse.Namespace) -> None:
         named = dataclasses.replace(found.map, image=printable(arguments.name or found.map.image))
         out = directory(arguments)
         found = dataclasses.replace(found, map=named, source=seen_from(out or Path(), arguments.map), reading=given)
-        written = [] if out is None else write(out, found, map, status, arguments.figures)
+        picture = None if arguments.no_picture else "survey.png"
+        written = [] if out is None else write(out, found, map, status, picture, arguments.figures)
         refused: export.Refused = {}
         if arguments.export:
             place = f"{Path(out or '') / 'export'}{os.sep}"
@@ -245,17 +248,21 @@ def seen_from(out: Path, map: str) -> str:
     return printable(Path(relative).as_posix())
 
 
-def write(out: Path, survey: Survey, map: Map, status: terminal.Status, figures: bool) -> list[str]:
+def write(
+    out: Path, survey: Survey, map: Map, status: terminal.Status, picture: str | None, figures: bool
+) -> list[str]:
     """Write the files; the names of what was written."""
     from groundplan._files import whole
-    from groundplan.figures import draw_survey
 
-    status("drawing survey.png")
     # The survey is put in place after its picture: where the disk is full there is neither.
     with whole(out / "survey.json") as beside:
         beside.write_text(survey.to_json(), encoding="utf-8")
-        draw_survey(survey, map, out / "survey.png")
-    written = [str(out / "survey.json"), str(out / "survey.png")]
+        if picture:
+            from groundplan.figures import draw_survey
+
+            status(f"drawing {picture}")
+            draw_survey(survey, map, out / picture)
+    written = [str(out / name) for name in ("survey.json", picture) if name]
     if figures:
         from groundplan.figures import draw_figures
 
