@@ -8,6 +8,7 @@ use super::period::{self, Period};
 use super::pitch;
 use super::racks::Row;
 use super::turned::Turned;
+use crate::bands::map_each;
 
 /// The shortest pitch that is looked for, and the longest, metres.
 const PITCHES: [f64; 2] = [1.0, 6.5];
@@ -40,9 +41,11 @@ pub fn find(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Option<P
         let mut specks: Vec<[f64; 2]> = pitch::specks_of(evidence, view).map(|[u, v]| [v, u]).collect();
         specks.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let places: Vec<Vec<f64>> = own.iter().map(|&n| along(&rows[n], &specks)).collect();
-        let Some(common) = common(&places) else { continue };
-        for (&n, places) in own.iter().zip(&places) {
-            found[n] = of_row(places, common, rows[n].along[1] - rows[n].along[0]);
+        let Some(common) = common(&places, evidence.threads) else { continue };
+        let length = |n: usize| rows[n].along[1] - rows[n].along[0];
+        let periods = map_each(own.len(), evidence.threads, |m| of_row(&places[m], common, length(own[m])));
+        for (n, period) in own.into_iter().zip(periods) {
+            found[n] = period;
         }
     }
     found
@@ -64,13 +67,13 @@ fn along(row: &Row, specks: &[[f64; 2]]) -> Vec<f64> {
 }
 
 /// The pitch at which the rows have most power together; the longest of those that are about as good.
-fn common(rows: &[Vec<f64>]) -> Option<f64> {
+fn common(rows: &[Vec<f64>], threads: usize) -> Option<f64> {
     let frequencies = period::frequencies(rows.iter().map(Vec::as_slice), PITCHES)?;
     let power = |f: f64| {
         let power = |places: &Vec<f64>| places.len() as f64 * period::measure(places, 1.0 / f).strength.powi(2);
         rows.iter().map(power).sum::<f64>()
     };
-    let powers: Vec<f64> = frequencies.iter().map(|f| power(*f)).collect();
+    let powers = map_each(frequencies.len(), threads, |n| power(frequencies[n]));
     let mut sorted = powers.clone();
     sorted.sort_by(f64::total_cmp);
     let usual = sorted[sorted.len() / 2];

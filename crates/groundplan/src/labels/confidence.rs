@@ -3,9 +3,12 @@
 //! so that two ways to find a label are held to one measure.
 
 use super::{Evidence, JunctionKind, Label};
+use crate::bands::map_each;
 use crate::grid::{Grid, State};
 use crate::subdivision::distance;
 
+/// So many labels are worth a thread's while.
+const TOGETHER: usize = 32;
 /// Looks are this far apart, metres.
 const STEP: f64 = 0.2;
 /// A side's structure lies from so far within a corridor to so far outside it, metres.
@@ -38,7 +41,9 @@ pub fn find_confidence(evidence: &Evidence, labels: &[Label]) -> Vec<f64> {
         Label::Rack { axis, width, .. } => map.rack(*axis, *width),
         Label::Pillar { at, width, .. } => map.pillar(*at, *width),
     };
-    labels.iter().map(|label| (sure(label).clamp(0.0, 1.0) * 1000.0).round() / 1000.0).collect()
+    let rounded = |label: &Label| (sure(label).clamp(0.0, 1.0) * 1000.0).round() / 1000.0;
+    let parts: Vec<&[Label]> = labels.chunks(TOGETHER).collect();
+    map_each(parts.len(), evidence.threads, |n| parts[n].iter().map(rounded).collect::<Vec<_>>()).concat()
 }
 
 /// The map, asked point by point.

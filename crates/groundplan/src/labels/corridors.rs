@@ -97,8 +97,10 @@ const ASKEW: f64 = 0.5;
 
 /// Corridors along every direction, in the order of the directions and their places.
 pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
+    // Each view shares its own work out among what threads are left.
+    let threads = evidence.threads.div_ceil(views.len().max(1));
     let found = map_each(views.len(), evidence.threads, |n| {
-        let known = along(evidence, views, &views[n]);
+        let known = along(evidence, views, &views[n], threads);
         let ragged = ragged::find(views, &views[n], evidence.parameters, &known);
         (known, ragged)
     });
@@ -123,9 +125,9 @@ fn is_askew_in(views: &[Turned], one: &Strip, other: &Strip) -> bool {
         && (other.across[0]..=other.across[1]).contains(&v)
 }
 
-fn along(evidence: &Evidence, views: &[Turned], view: &Turned) -> Vec<Strip> {
+fn along(evidence: &Evidence, views: &[Turned], view: &Turned, threads: usize) -> Vec<Strip> {
     let family = Family::new(evidence, views, view);
-    let mut candidates = family.candidates();
+    let mut candidates = family.candidates(threads);
     candidates.sort_by(|a, b| b.strip.score.total_cmp(&a.strip.score));
     let mut kept: Vec<Strip> = Vec::new();
     for candidate in candidates {
@@ -187,9 +189,9 @@ impl<'a> Family<'a> {
     }
 
     /// The strips between every two lines that are a corridor's width apart.
-    fn candidates(&self) -> Vec<Candidate> {
-        let mut found = Vec::new();
-        for low in 0..self.offsets.len() {
+    fn candidates(&self, threads: usize) -> Vec<Candidate> {
+        let above = |low: usize| {
+            let mut found = Vec::new();
             for high in low + 1..self.offsets.len() {
                 let across = [self.offsets[low], self.offsets[high]];
                 let width = across[1] - across[0];
@@ -202,8 +204,9 @@ impl<'a> Family<'a> {
                     found.extend(strips.into_iter().map(|strip| Candidate { strip, sides }));
                 }
             }
-        }
-        found
+            found
+        };
+        map_each(self.offsets.len(), threads, above).into_iter().flatten().collect()
     }
 
     /// What some columns between two lines hold.

@@ -55,12 +55,18 @@ impl<'a> Look<'a> {
             let place = [0, 1].map(|axis| start[axis] + n as i64 * step[axis]);
             let [x, y] = place.map(|p| (p >> BITS) as usize);
             let reach = self.reaches[y / SIDE * self.across + x / SIDE];
-            let sample = self.samples[usize::from(self.rows[y][x])];
             if reach == 0 {
-                samples[n] = sample;
-                n += 1;
+                let end = to.min(n + SIDE);
+                let mut place = place;
+                for sample in &mut samples[n..end] {
+                    let [x, y] = place.map(|p| (p >> BITS) as usize);
+                    *sample = self.samples[usize::from(self.rows[y][x])];
+                    place = [place[0] + step[0], place[1] + step[1]];
+                }
+                n = end;
                 continue;
             }
+            let sample = self.samples[usize::from(self.rows[y][x])];
             let beyond = ((usize::from(reach) - 1) * SIDE) as f32;
             let leap = [0, 1].map(|axis| {
                 let in_tile = (place[axis] & (((SIDE as i64) << BITS) - 1)) as f32 / (1i64 << BITS) as f32;

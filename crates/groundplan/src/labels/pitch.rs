@@ -38,13 +38,15 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
             continue;
         }
         let beside = [-1.0, 1.0].map(|side| taken(view, offset, side));
+        let columns: Vec<usize> =
+            places.iter().map(|&step| view.column(view.start[0] + f64::from(step) * STEP)).collect();
         for (n, &place) in places.iter().enumerate() {
-            for other in &places[n + 1..] {
+            for (other, &column) in places[n + 1..].iter().zip(&columns[n + 1..]) {
                 let lag = (other - place) as usize;
                 if lag >= sums.len() {
                     break;
                 }
-                if lag >= first - BASE && is_face(view, &beside, place, *other) {
+                if lag >= first - BASE && is_face(&beside, columns[n], column + 1) {
                     sums[lag] += 1.0;
                 }
             }
@@ -104,17 +106,15 @@ fn taken(view: &Turned, offset: f64, side: f64) -> Vec<f64> {
     let ends = [offset + side * BESIDE.0, offset + side * BESIDE.1];
     let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
     let mut sum = 0.0;
-    let sums = (0..view.size[0]).map(|c| {
-        sum += view.blocked(c, low, high);
+    let sums = view.all_blocked(low, high).into_iter().map(|blocked| {
+        sum += blocked;
         sum
     });
     std::iter::once(0.0).chain(sums).collect()
 }
 
-/// True when a row lies on one side of the line between two steps, and free floor on the other.
-fn is_face(view: &Turned, beside: &[Vec<f64>; 2], from: i32, to: i32) -> bool {
-    let column = |step: i32| view.column(view.start[0] + f64::from(step) * STEP);
-    let (from, to) = (column(from), column(to) + 1);
+/// True when a row lies on one side of the line from one column to before another, and free floor on the other.
+fn is_face(beside: &[Vec<f64>; 2], from: usize, to: usize) -> bool {
     let [one, two] = [0, 1].map(|n| (beside[n][to] - beside[n][from]) / (to - from) as f64);
     one.min(two) <= FACE.0 && one.max(two) >= FACE.1
 }

@@ -70,7 +70,7 @@ impl Cells {
             return Self::Squared { width, bands };
         }
         let cells = map_bands(height, threads, rows).concat();
-        let barred: Vec<u8> = cells.chunks(width).flat_map(barred).collect();
+        let barred = barred(width, &cells);
         let sums = [cumulate(width, &cells, |cell| cell & 15), cumulate(width, &cells, |cell| cell >> 4)];
         let [blocked, occupied] = sums;
         Self::Summed { width, sums: [blocked, occupied, cumulate(width, &barred, |cell| cell)] }
@@ -180,7 +180,7 @@ impl Band {
     fn new(width: usize, cells: &[u8]) -> Self {
         let across = width.div_ceil(SIDE);
         let mut made = Self { places: Vec::with_capacity(across * BAND), squares: Vec::new() };
-        let barred: Vec<u8> = cells.chunks(width).flat_map(barred).collect();
+        let barred = barred(width, cells);
         for (cells, barred) in cells.chunks(SIDE * width).zip(barred.chunks(SIDE * width)) {
             for from in (0..width).step_by(SIDE) {
                 // What lies beyond the borders is like what lies on them.
@@ -222,13 +222,19 @@ fn spread(bits: u8) -> u64 {
     (apart + 0x7f * ONES) >> 7 & ONES
 }
 
-/// In which cells of a row something stands, or beside which: a wall one pixel thick, or not quite square to the columns,
-/// shows in two or three of them.
-fn barred(row: &[u8]) -> Vec<u8> {
-    let mut barred: Vec<u8> = row.iter().map(|cell| cell >> 4).collect();
-    barred.iter_mut().zip(&row[1..]).for_each(|(to, next)| *to |= next >> 4);
-    barred[1..].iter_mut().zip(row).for_each(|(to, before)| *to |= before >> 4);
-    barred.into_iter().map(|cell| u8::from(cell != 0)).collect()
+/// In which cells something stands, or beside which along their row: a wall one pixel thick, or not quite square to the
+/// columns, shows in two or three of them.
+fn barred(width: usize, cells: &[u8]) -> Vec<u8> {
+    let mut barred = vec![0; cells.len()];
+    for (to, row) in barred.chunks_mut(width).zip(cells.chunks(width)) {
+        to.iter_mut().zip(row).for_each(|(to, cell)| *to = cell >> 4);
+        to.iter_mut().zip(&row[1..]).for_each(|(to, next)| *to |= next >> 4);
+        to[1..].iter_mut().zip(row).for_each(|(to, before)| *to |= before >> 4);
+        for to in to {
+            *to = u8::from(*to != 0);
+        }
+    }
+    barred
 }
 
 /// Sums of rows of cells: a row of nothing, the first row, the first two, and so on.

@@ -27,6 +27,8 @@ pub struct Turned {
     pub direction: usize,
     /// Its angle in the map frame.
     pub angle: f64,
+    /// Its cosine and sine.
+    heading: [f64; 2],
     /// Side of a cell, metres.
     pub cell: f64,
     /// Place of the first cell's lower corner.
@@ -67,6 +69,7 @@ impl Turned {
         let mut made = Self {
             direction,
             angle,
+            heading: [cos, sin],
             cell,
             start,
             size,
@@ -139,13 +142,13 @@ impl Turned {
 
     /// Place along and across of a point of the map frame.
     pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let (cos, sin) = (libm::cos(self.angle), libm::sin(self.angle));
+        let [cos, sin] = self.heading;
         [x * cos + y * sin, y * cos - x * sin]
     }
 
     /// The point of the map frame at a place.
     pub fn to_map(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        let (cos, sin) = (libm::cos(self.angle), libm::sin(self.angle));
+        let [cos, sin] = self.heading;
         [u * cos - v * sin, u * sin + v * cos]
     }
 

@@ -301,7 +301,11 @@ impl<'a> Joining<'a> {
         let Stretch { bar, pixels, .. } = &self.stretches[stretch];
         // A stretch of a slanted bar has fewer pixels than it is long.
         let width = self.bars[*bar].length().min(std::f64::consts::SQRT_2 * pixels.len() as f64);
-        let beyond = self.beyond(stretch, sides[0], 1.0).min(self.beyond(stretch, sides[1], -1.0));
+        // The smaller one first: of the other it is enough to know that it is as wide.
+        let both = [(sides[0], 1.0), (sides[1], -1.0)];
+        let first = usize::from(self.area[sides[1] as usize] < self.area[sides[0] as usize]);
+        let one = self.beyond(stretch, both[first], f64::INFINITY);
+        let beyond = one.min(self.beyond(stretch, both[1 - first], one));
         let share = if beyond > 0.0 { (width / beyond).min(1.0) } else { 1.0 };
         let tie = PER_METRE * width * self.raster.resolution;
         let area = sides.map(|side| self.area[side as usize]).into_iter().min().unwrap_or(0) as f64;
@@ -310,8 +314,9 @@ impl<'a> Joining<'a> {
         Openness { value: share + tie + if small { 10.0 } else { 0.0 }, stretch, ages }
     }
 
-    /// How wide a set is beyond a stretch, at its widest within [`DEPTH`], measured along the bar, pixels.
-    fn beyond(&mut self, stretch: usize, set: u32, side: f64) -> f64 {
+    /// How wide a set is beyond a stretch, at its widest within [`DEPTH`], measured along the bar, pixels; or as much as
+    /// is enough.
+    fn beyond(&mut self, stretch: usize, (set, side): (u32, f64), enough: f64) -> f64 {
         let Stretch { bar, pixels, .. } = &self.stretches[stretch];
         let [ux, uy] = self.bars[*bar].heading();
         let [x, y] = self.raster.place(pixels[pixels.len() / 2]);
@@ -330,12 +335,12 @@ impl<'a> Joining<'a> {
         };
         let mut widest = 0.0_f64;
         let mut depth = STEP;
-        while depth <= deepest.max(STEP) {
+        while depth <= deepest.max(STEP) && widest < enough {
             let [px, py] = [x - uy * side * depth, y + ux * side * depth];
             if let Some(own) = is_in([px, py], None) {
                 let mut reach = |way: f64| -> f64 {
                     let mut n = 1.0;
-                    while is_in([px + way * ux * n, py + way * uy * n], Some(own)).is_some() {
+                    while n <= enough && is_in([px + way * ux * n, py + way * uy * n], Some(own)).is_some() {
                         n += 1.0;
                     }
                     n

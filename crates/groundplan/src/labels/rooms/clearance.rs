@@ -25,6 +25,19 @@ impl Clearance {
         self.0.as_deref()
     }
 
+    /// Those within some columns and rows; what is on their border counts as not free.
+    pub fn within(&self, raster: &Raster, window: [Range<usize>; 2]) -> Vec<u32> {
+        let Some(all) = &self.0 else { return within(raster, window, 1) };
+        let [columns, rows] = window;
+        let width = columns.len();
+        let mut part = vec![0; width * rows.len()];
+        for (to, y) in part.chunks_mut(width).zip(rows.clone()).skip(1).take(rows.len().saturating_sub(2)) {
+            let from = y * raster.width + columns.start;
+            to[1..width - 1].copy_from_slice(&all[from + 1..from + width - 1]);
+        }
+        part
+    }
+
     /// Calls `visit` with each run and the clearances of its pixels.
     pub fn over(&self, raster: &Raster, runs: &Runs, threads: usize, mut visit: impl FnMut(usize, &[u32])) {
         if let Some(all) = &self.0 {
@@ -44,7 +57,7 @@ impl Clearance {
 }
 
 /// The clearances within some columns and rows of the raster; what is on their border or beyond counts as not free.
-pub fn within(raster: &Raster, [columns, rows]: [Range<usize>; 2], threads: usize) -> Vec<u32> {
+fn within(raster: &Raster, [columns, rows]: [Range<usize>; 2], threads: usize) -> Vec<u32> {
     let width = columns.len();
     let border = vec![0; width];
     let inner = rows.start + 1..rows.end - 1;

@@ -1,6 +1,6 @@
 //! Narrows: where the free space is tighter than on both sides, whether or not a line leads there.
 
-use super::clearance::{self, Clearance};
+use super::clearance::Clearance;
 use super::gaps::Bar;
 use super::raster::Raster;
 use super::runs::Sets;
@@ -15,6 +15,8 @@ const WIDTHS: (f64, f64) = (0.3, 4.0);
 const TOUCH: f64 = 1.6;
 /// and so far from side by side, as the cosine of the angle between them.
 const OPPOSITE: f64 = -0.3;
+/// Rasters of more pixels than this are looked at square by square.
+const WHOLE: usize = 1 << 22;
 /// A large raster is looked at by squares of so many pixels, each with so much around it, metres, as a narrow and the
 /// places that it joins may take.
 const SQUARE: usize = 2048;
@@ -22,7 +24,7 @@ const AROUND: f64 = 8.0;
 
 /// Straight closures of all narrows, in the order of the places that they part; on a large raster, square by square.
 pub fn find(raster: &Raster, clearance: &Clearance, threads: usize) -> Vec<Bar> {
-    if let Some(clearance) = clearance.whole() {
+    if let Some(clearance) = clearance.whole().filter(|all| all.len() <= WHOLE) {
         return Window { clearance, width: raster.width }.narrows(raster).into_iter().map(|(_, bar)| bar).collect();
     }
     let around = raster.pixels(AROUND).ceil() as usize;
@@ -35,7 +37,7 @@ pub fn find(raster: &Raster, clearance: &Clearance, threads: usize) -> Vec<Bar> 
         let window = [wider(columns, raster.width), wider(rows, raster.height)];
         let [left, low] = [0, 1].map(|axis| window[axis].start);
         let width = window[0].len();
-        let clearance = clearance::within(raster, window, 1);
+        let clearance = clearance.within(raster, window);
         let found = Window { clearance: &clearance, width }.narrows(raster).into_iter();
         let own = found
             .filter(|(pixel, _)| columns.contains(&(pixel % width + left)) && rows.contains(&(pixel / width + low)));
