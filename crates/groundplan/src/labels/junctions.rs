@@ -23,8 +23,9 @@ pub struct Meeting {
     ways: Vec<f64>,
 }
 
-/// A corridor goes on beyond a junction when it does so for this long, metres.
-pub const ARM: f64 = 1.6;
+/// A corridor goes on beyond a junction when it does so for this long, metres, and where a wall ends it, for this share
+/// of its width: less is what is left of it at a corner.
+const ARM: (f64, f64) = (1.6, 0.65);
 /// A corridor that ends this far short of another still meets it, metres, when the way between is free.
 const SHORT: f64 = 6.0;
 /// Corridors whose directions have an angle of a smaller sine do not meet.
@@ -114,6 +115,12 @@ fn kind(ways: &[f64]) -> Option<JunctionKind> {
     }
 }
 
+/// True when a corridor goes on beyond a junction by so much that it leads on.
+pub fn goes_on(view: &Turned, strip: &Strip, side: usize, beyond: f64) -> bool {
+    let sign = if side == 0 { -1.0 } else { 1.0 };
+    beyond >= ARM.0 && (beyond >= ARM.1 * strip.width() || closed(view, strip, side, sign, LOOK).is_none())
+}
+
 fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting> {
     let one = &strips[pair[0]];
     let two = &strips[pair[1]];
@@ -154,11 +161,9 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
         if has_door || !barriers::stops(view, strip.across, columns).is_empty() {
             return None;
         }
-        for (goes_on, heading) in [
-            (strip.along[0] <= u - reach[n] - ARM, view.angle + std::f64::consts::PI),
-            (strip.along[1] >= u + reach[n] + ARM, view.angle),
-        ] {
-            if goes_on {
+        for (side, heading) in [(0, view.angle + std::f64::consts::PI), (1, view.angle)] {
+            let beyond = if side == 0 { u - strip.along[0] } else { strip.along[1] - u };
+            if goes_on(view, strip, side, beyond - reach[n]) {
                 ways.push(heading);
             }
         }
@@ -186,7 +191,7 @@ pub fn ends(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<(us
                 let place = meeting.corridors.iter().position(|c| *c == n);
                 place.is_some_and(|p| {
                     let u = view.place(meeting.at)[0];
-                    (strip.along[side] - u) * sign < meeting.reach[p.min(1)] + ARM
+                    !goes_on(view, strip, side, (strip.along[side] - u) * sign - meeting.reach[p.min(1)])
                 })
             });
             if !met && let Some(place) = closed(view, strip, side, sign, LOOK) {

@@ -256,11 +256,10 @@ fn extents(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<[f64
     let place = |n: usize, at: [f64; 2]| views[strips[n].direction].place(at)[0];
     for (n, reach, at) in all() {
         let (u, [low, high]) = (place(n, at), strips[n].along);
-        if low > u - reach - junctions::ARM {
-            extents[n][0] = u;
-        }
-        if high < u + reach + junctions::ARM {
-            extents[n][1] = u;
+        for (side, beyond) in [(0, u - low), (1, high - u)] {
+            if !junctions::goes_on(&views[strips[n].direction], &strips[n], side, beyond - reach) {
+                extents[n][side] = u;
+            }
         }
     }
     for (n, _, at) in all() {
