@@ -68,9 +68,11 @@ struct Crossed {
     way: bool,
     /// There may be one, if the strip is one elsewhere.
     open: bool,
+    /// It passes the row's end.
+    at_end: bool,
 }
 
-/// What a strip finds where it crosses a row; nothing where it ends before, or passes the row's ends.
+/// What a strip finds where it crosses a row; nothing where it ends before.
 fn cross(
     [view, other]: [&Turned; 2],
     row: &Row,
@@ -88,24 +90,28 @@ fn cross(
     let own = sorted(row.across.map(along));
     let reach = strip.width() / 2.0 / sin.abs();
     let shared = own[1].min(strip.along[1]) - own[0].max(strip.along[0]);
-    if shared < ENTERS * (own[1] - own[0])
-        || u - reach <= row.along[0] + view.cell
-        || u + reach >= row.along[1] - view.cell
-    {
+    if shared < ENTERS * (own[1] - own[0]) || u - reach >= row.along[1] || u + reach <= row.along[0] {
         return None;
     }
-    let way = ways.iter().any(|way| way[0] < u && u < way[1]);
+    let sides = [u - reach, u + reach];
+    let passes = columns.lets_through(sides);
+    let at_end = sides[0] <= row.along[0] + view.cell || sides[1] >= row.along[1] - view.cell;
+    let way = if at_end { columns.may_end_at(sides) } else { ways.iter().any(|way| way[0] < u && u < way[1]) };
     let along_of = |places: [f64; 2]| sorted(places.map(along));
     Some(Crossed {
         along: along_of(between.map(Strip::middle)),
         outer: along_of([between[0].across[0], between[1].across[1]]),
         way,
-        open: way || columns.lets_through([u - reach, u + reach]),
+        open: way || passes,
+        at_end,
     })
 }
 
 /// A strip's pieces between the rows that it has no way through.
 fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
+    if crossed.iter().any(|c| c.at_end && c.way) {
+        crossed.retain(|c| !c.at_end);
+    }
     crossed.sort_by(|a, b| a.along[0].total_cmp(&b.along[0]));
     let piece = |along: [f64; 2]| Strip { along, ..strip.clone() };
     let is_way = crossed.iter().any(|c| c.way);

@@ -13,6 +13,8 @@ use crate::grid::Frame;
 const WIDTH: (f64, f64) = (1.6, 8.0);
 /// A section up to this many pitches is an empty bay.
 const BAY: f64 = 1.08;
+/// What passes a row's end is at least so many pitches wide, or lies within its last bay.
+const NARROW: f64 = 0.8;
 /// A section this near to a whole number of pitches is one of empty bays, unless its ends are closed.
 const WHOLE: f64 = 0.1;
 /// What stands so near to a way's side stands at it, metres.
@@ -95,13 +97,29 @@ impl<'a> Columns<'a> {
 
     /// True when what is known to be a way elsewhere goes on through the row: it is wider than a bay, and nothing stands
     /// between its sides that one could not walk round.
-    pub fn lets_through(&self, [from, to]: [f64; 2]) -> bool {
-        let column = |u: f64| (((u - self.row.along[0]) / self.view.cell).max(0.0) as usize).min(self.blocked.len());
-        let (first, last) = (column(from + SIDE), column(to - SIDE));
+    pub fn lets_through(&self, sides: [f64; 2]) -> bool {
+        let (first, last) = self.inner(sides);
         first < last
-            && self.pitch.is_some_and(|pitch| to - from > BAY * pitch)
+            && self.pitch.is_some_and(|pitch| sides[1] - sides[0] > BAY * pitch)
             && self.share(first, last) <= CLUTTER
             && !(first..last).any(|n| self.stops(n))
+    }
+
+    /// True when the row may end at a way that passes by: that is hardly narrower than a bay, and no upright stands in it.
+    pub fn may_end_at(&self, sides: [f64; 2]) -> bool {
+        let (first, last) = self.inner(sides);
+        self.pitch.is_none_or(|pitch| sides[1] - sides[0] > NARROW * pitch) && !(first..last).any(|n| self.stops(n))
+    }
+
+    /// True when something stands along a straight line across the row near a place.
+    fn is_closed(&self, along: f64) -> bool {
+        self.closed(along) >= FRAME.1
+    }
+
+    /// The columns between two sides, without what stands at these.
+    fn inner(&self, sides: [f64; 2]) -> (usize, usize) {
+        let column = |u: f64| (((u - self.row.along[0]) / self.view.cell).max(0.0) as usize).min(self.blocked.len());
+        (column(sides[0] + SIDE), column(sides[1] - SIDE))
     }
 
     /// Share of the columns that is not free.
@@ -126,7 +144,7 @@ impl<'a> Columns<'a> {
         if !(WIDTH.0..=WIDTH.1).contains(&width) || self.share(from, to) > CLUTTER {
             return false;
         }
-        if [from, to].iter().all(|&n| self.closed(self.place(n)) >= FRAME.1) {
+        if [from, to].iter().all(|&n| self.is_closed(self.place(n))) {
             return true;
         }
         let stands = |n: &usize| self.blocked[*n] > FREE || self.faces[*n].contains(&true);
