@@ -89,6 +89,9 @@ const WALLED: f64 = 0.8;
 const WEAKER: f64 = 0.45;
 /// And where no bays recur none when so much of its length has no more than posts on a side.
 const BARE: f64 = 0.7;
+/// Nor when a wall runs along nearly all of one side, and so much has structure on the other.
+const WALL: f64 = 0.9;
+const WEAKER_AT_WALL: f64 = 0.38;
 /// Strips that overlap across by more than this share of the narrower one are rivals.
 const RIVAL: f64 = 0.25;
 
@@ -306,7 +309,10 @@ impl<'a> Family<'a> {
         let bay = self.pitches.iter().any(|pitch| (BAY_WIDTH.0 * pitch..=BAY_WIDTH.1 * pitch).contains(&width));
         let closed = near >= WALLED * columns.len() as f64 && faced(2) >= WALLED * near;
         let long = length >= LONG * width && faced(1) >= FACED_ONCE * near && weaker >= WEAKER * near;
-        let aisle = length >= VERY_LONG * width || long || closed;
+        // Nor does a wall go on along a row of bays past the ways between the rows.
+        let beside_wall = (0..2).any(|n| count(&|c| c.faces[n]) >= WALL * columns.len() as f64)
+            && weaker >= WEAKER_AT_WALL * columns.len() as f64;
+        let aisle = length >= VERY_LONG * width || long || closed || beside_wall;
         if bay && !aisle {
             return false;
         }
