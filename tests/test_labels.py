@@ -144,3 +144,11 @@ def test_names_hold_when_the_map_is_made_again(seed: int) -> None:
     places = [{c["name"]: np.mean(c["axis"], axis=0) for c in survey.of_kind("corridor")} for survey in (before, again)]
     kept = [name for name, at in places[0].items() if name in places[1] and np.hypot(*(at - places[1][name])) < 1.0]
     assert len(kept) >= 0.95 * len(places[0])
+
+
+@pytest.mark.parametrize("name", ["cluttered", "near-diagonal", "staggered", "goods-on-the-floor"])
+def test_ways_across_rows_are_told_from_bays_that_goods_close(name: str) -> None:
+    options = next(case.options for case in evaluate.suite("warehouses") if case.name == name)
+    made = simulate.warehouse(**options)
+    scores = evaluate.score(groundplan.survey(made.map, threads=1).to_dict(), made.truth)
+    assert scores["junction_typed_f1"] >= 0.93 and scores["corridor_precision"] >= 0.95

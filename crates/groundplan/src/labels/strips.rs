@@ -145,7 +145,7 @@ impl Plan {
         // A corridor goes on to what it meets, and there it may be what another one meets.
         let longer = extents(views, &strips, &meetings);
         for (strip, along) in strips.iter_mut().zip(longer) {
-            strip.along = along;
+            strip.along = [strip.along[0].min(along[0]), strip.along[1].max(along[1])];
         }
         let (strips, meetings) = connected(views, strips);
         let mut extents = extents(views, &strips, &meetings);
