@@ -104,7 +104,7 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
     let threads = evidence.threads.div_ceil(views.len().max(1));
     let found = map_each(views.len(), evidence.threads, |n| {
         let known = along(evidence, views, &views[n], threads);
-        let ragged = ragged::find(views, &views[n], evidence.parameters, &known);
+        let ragged = ragged::find(views, &views[n], evidence.parameters, &known, threads);
         (known, ragged)
     });
     let (known, ragged): (Vec<_>, Vec<_>) = found.into_iter().unzip();

@@ -7,12 +7,15 @@
 use super::barriers;
 use super::corridors::{self, Strip, best_pieces, close};
 use super::turned::{Shares, Turned};
+use crate::bands::map_each;
 use crate::parameters::Parameters;
 use std::ops::Range;
 
 /// Widths are tried in such steps, and places across in such shares of the width.
 const WIDER: f64 = 1.25;
 const STEP: f64 = 0.125;
+/// So many are worth a thread's while.
+const TOGETHER: usize = 64;
 /// The narrowest with deep sides, metres: what is narrower has its sides nearer than goods are apart.
 const NARROWEST: f64 = 1.2;
 /// The widest is so much of the widest corridor: with what its sides leave it is as wide.
@@ -69,10 +72,10 @@ impl Held {
 }
 
 /// The ways along one direction beside those that are known, the best first.
-pub fn find(views: &[Turned], view: &Turned, parameters: &Parameters, known: &[Strip]) -> Vec<Strip> {
+pub fn find(views: &[Turned], view: &Turned, parameters: &Parameters, known: &[Strip], threads: usize) -> Vec<Strip> {
     let bay = corridors::pitches(views, view).into_iter().fold(0.0, |widest, pitch| f64::max(widest, BAY * pitch));
     let seen = Seen::new(view);
-    let mut candidates: Vec<(Strip, Held)> = Vec::new();
+    let mut tried = Vec::new();
     let mut width = parameters.labels_min_width;
     while width <= WIDEST * parameters.labels_max_width {
         let step = (STEP * width).max(view.cell);
@@ -84,13 +87,18 @@ pub fn find(views: &[Turned], view: &Turned, parameters: &Parameters, known: &[S
             if beyond(across).into_iter().any(|side| seen.between(side) < LEAST_SEEN * LONG.0 / view.cell) {
                 continue;
             }
-            let candidate = Candidate::new(view, across, bay);
-            for by in deep.into_iter().chain([Held::Thin]) {
-                candidates.extend(candidate.ways(by).into_iter().map(|way| (way, by)));
-            }
+            tried.push((across, deep));
         }
         width *= WIDER;
     }
+    let ways = |(across, deep): &([f64; 2], Option<Held>)| {
+        let candidate = Candidate::new(view, *across, bay);
+        let of = |by: Held| candidate.ways(by).into_iter().map(|way| (way, by)).collect::<Vec<_>>();
+        deep.iter().copied().chain([Held::Thin]).flat_map(of).collect::<Vec<_>>()
+    };
+    let parts: Vec<_> = tried.chunks(TOGETHER).collect();
+    let mut candidates: Vec<(Strip, Held)> =
+        map_each(parts.len(), threads, |n| parts[n].iter().flat_map(ways).collect::<Vec<_>>()).concat();
     candidates.sort_by(|a, b| b.0.score.total_cmp(&a.0.score));
     let mut found: Vec<Strip> = Vec::new();
     for (candidate, by) in candidates {
@@ -183,8 +191,10 @@ impl<'a> Candidate<'a> {
         let mut from = within.start;
         while from + least <= count {
             // From its far end, so that most columns are never asked.
-            if let Some(closed) = (from..from + least).rev().find(is_closed) {
-                from = closed + 1;
+            let of_rival = |rival: &Range<usize>| (rival.start.max(from)..rival.end.min(from + least)).last();
+            let last = self.blocked.last(from..from + least, self.closed);
+            if let Some(last) = last.max(rivals.iter().filter_map(of_rival).max()) {
+                from = last + 1;
                 continue;
             }
             let to = (from + least..count).find(is_closed).unwrap_or(count);

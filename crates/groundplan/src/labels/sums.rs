@@ -122,6 +122,17 @@ impl Rows<'_> {
         }
     }
 
+    /// The last of some columns whose sum is as large as that.
+    pub fn last(&self, columns: std::ops::Range<usize>, least: u32) -> Option<usize> {
+        match self {
+            Self::Summed { below, above } => {
+                let sums = above[columns.clone()].iter().zip(&below[columns.clone()]);
+                sums.map(|(above, below)| above - below).rposition(|sum| sum >= least).map(|n| columns.start + n)
+            }
+            Self::Squared { .. } => columns.rev().find(|&column| self.at(column) >= least),
+        }
+    }
+
     /// The sums over them of some columns.
     pub fn over(&self, columns: std::ops::Range<usize>) -> Vec<u32> {
         match self {

@@ -274,6 +274,11 @@ impl Shares<'_> {
         self.rows.at(column)
     }
 
+    /// The last of some columns with so many.
+    pub fn last(&self, columns: Range<usize>, least: u32) -> Option<usize> {
+        self.rows.last(columns, least)
+    }
+
     /// The same of a range of columns.
     pub fn over(&self, columns: Range<usize>) -> Vec<u32> {
         self.rows.over(columns)
