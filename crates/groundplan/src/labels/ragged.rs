@@ -32,12 +32,15 @@ const GAP: f64 = 1.4;
 /// A way is at least so long, metres, and so many times as long as wide: less is a room. The same with thin sides.
 const LONG: (f64, f64) = (7.0, 4.2);
 const VERY_LONG: (f64, f64) = (10.0, 5.0);
-/// Least shares of its columns that are clear, that hold on each side and on both, and on which something seen stands
+/// Least shares of its columns that are clear (and that are where the sides are thin), that hold on each side and on both, and on which something seen stands
 /// there.
 const LEAST_CLEAR: f64 = 0.75;
+const LEAST_CLEAR_THIN: f64 = 0.95;
 const LEAST_HELD: f64 = 0.5;
 const LEAST_BOTH: f64 = 0.45;
 const LEAST_SEEN: f64 = 0.3;
+/// Least share of a thin side on which structure lies along the way.
+const LEAST_FACED: f64 = 0.2;
 /// Up to so many pitches of the rows that it crosses it may lie over empty bays, from row to row: so much holds on both
 /// sides then.
 const BAY: f64 = 1.17;
@@ -288,10 +291,16 @@ impl<'a> Candidate<'a> {
             let seen = view.some_occupied(on_map.clone(), low, high).into_iter().filter(|share| *share > 0.0);
             seen.count() as f64 / length
         };
-        share(&columns.clear) >= LEAST_CLEAR
+        let faced = |[low, high]: [f64; 2]| {
+            let lines = (0..view.offsets.len()).filter(|&n| (low..=high).contains(&view.offsets[n]));
+            let lines: Vec<&Vec<bool>> = lines.map(|n| &view.covered[n]).collect();
+            on_map.clone().filter(|&c| lines.iter().any(|line| line[c])).count() as f64 / length
+        };
+        share(&columns.clear) >= if by == Held::Thin { LEAST_CLEAR_THIN } else { LEAST_CLEAR }
             && columns.held.iter().all(|held| share(held) >= LEAST_HELD)
             && both >= if by == Held::Thin && self.bay { LEAST_BOTH_BAY } else { LEAST_BOTH }
             && sides.into_iter().all(|side| seen(side) >= LEAST_SEEN)
+            && (by == Held::Deep || sides.into_iter().all(|side| faced(side) >= LEAST_FACED))
             && !barriers::across(view, self.across, on_map.clone()).contains(&true)
             && !barriers::doors(view, sides, on_map.clone()).contains(&true)
             && barriers::stops(view, self.across, on_map).is_empty()
