@@ -43,7 +43,7 @@ def draw_labels(axes: Axes, survey: Survey) -> None:
     draw_doors(axes, kinds["door"], survey)
     draw_pillars(axes, kinds["pillar"])
     draw_junctions(axes, kinds["junction"], kinds["corridor"], names)
-    draw_corridors(axes, kinds["corridor"])
+    draw_corridors(axes, kinds["corridor"], kinds["junction"])
     name_corridors(kinds["corridor"], kinds["junction"], names)
     name_regions(kinds["region"], kinds["corridor"], names)
 
@@ -148,13 +148,17 @@ def draw_racks(axes: Axes, racks: Sequence[Label]) -> None:
     axes.add_collection(collection, autolim=False)
 
 
-def draw_corridors(axes: Axes, corridors: Sequence[Label]) -> None:
-    """Translucent polygons with their centre lines."""
-    # One shape for them all: where two cross, the tint is no deeper.
-    rings = [closed(wound(label["polygon"], 1)) for label in corridors if label.get("polygon")]
+def draw_corridors(axes: Axes, corridors: Sequence[Label], junctions: Sequence[Label]) -> None:
+    """Translucent polygons with their centre lines, and corners: the corridors that end there end in their middle."""
+    rings, corners = (
+        [closed(wound(label["polygon"], 1)) for label in labels if label.get("polygon")]
+        for labels in (corridors, junctions)
+    )
     if rings:
         fill = to_rgba(ink.CORRIDOR, 0.24)
-        axes.add_patch(PathPatch(Path.make_compound_path(*rings), facecolor=fill, edgecolor="none", lw=0, zorder=3))
+        # One shape for them all: where two cross, the tint is no deeper.
+        shape = Path.make_compound_path(*rings, *corners)
+        axes.add_patch(PathPatch(shape, facecolor=fill, edgecolor="none", lw=0, zorder=3))
         outlines = [ring.vertices for ring in rings]
         edge = to_rgba(ink.CORRIDOR, 0.6)
         axes.add_collection(LineCollection(outlines, colors=[edge], linewidths=0.4, zorder=3.1), autolim=False)
