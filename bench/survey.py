@@ -1,14 +1,12 @@
 """What a survey costs against opening the map's picture (``cv2.imread``) and against ``cv2.Sobel``, stage by stage.
 
 Medians; what a ratio is made of is measured in turns in one run. On Bormann et al.'s maps (../shared/maps/bormann; the
-mean over them) and on the example's warehouse laid side by side to 4000 x 4000 pixels; then how the cost grows from 1
-to 64 megapixels, with the memory that it takes beyond the map, and a survey from the shell. Ends with exit code 1 when
-a bar is missed. Needs OpenCV. ``bench/survey.py N`` measures N runs (default 5).
+mean over them) and on the example's warehouse laid side by side to 4000 x 4000 pixels; then a survey from the shell.
+Ends with exit code 1 when a bar is missed. Needs OpenCV. ``bench/survey.py N`` measures N runs (default 5).
 """
 
 from __future__ import annotations
 
-import json
 import os
 import platform
 import statistics
@@ -103,23 +101,6 @@ def table(title: str, columns: dict[int, dict[str, float]]) -> None:
         print(f"{name:20}" + "".join(f"{column[name]:10.2f}" for column in columns.values()))
 
 
-def grown(side: int) -> tuple[float, float]:
-    """Seconds of a survey on all cores and mebibytes beyond the map, in a process of its own."""
-    command = [sys.executable, __file__, "--grow", str(side)]
-    return tuple(json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout))
-
-
-def grow(side: int) -> tuple[float, float]:
-    """The same in this process."""
-    import resource
-
-    map = laid_out(side)
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    start = time.perf_counter()
-    gp.survey(map)
-    return time.perf_counter() - start, (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
-
-
 def shell(folder: Path, runs: int) -> dict[str, float]:
     """Median seconds of `groundplan survey` on a map of one megapixel, with its picture and without."""
     import cv2
@@ -169,10 +150,6 @@ def main(runs: int) -> int:
         columns = {threads: measured([(large, folder / "large.png")], threads, min(runs, 3)) for threads in THREADS}
         table(f"{SIDE} x {SIDE}", columns)
         bars.append(("survey / imread, 4000 x 4000, 4 threads", columns[4]["survey"] / columns[4]["cv2.imread"], LARGE))
-        print(f"\n{'Mpx':>6}{'seconds':>10}{'ns a pixel':>12}{'MiB beyond the map':>20}")
-        for side in (1000, 2000, 4000, 8000):
-            seconds, mebibytes = grown(side)
-            print(f"{side * side / 1e6:6.0f}{seconds:10.3f}{1e9 * seconds / side**2:12.1f}{mebibytes:20.0f}")
         spent = shell(folder, runs)
         print("\ngroundplan survey, 1 Mpx, process start to files written, seconds")
         for name, seconds in spent.items():
@@ -185,7 +162,4 @@ def main(runs: int) -> int:
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["--grow"]:
-        print(json.dumps(grow(int(sys.argv[2]))))
-    else:
-        sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 5))
+    sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 5))
