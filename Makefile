@@ -33,7 +33,7 @@ check: .venv/.built ## Check formatting, lints and types of both languages
 	$(bin)/python -m mypy.stubtest groundplan._core
 
 bench: .venv/.built ## Run every measurement in bench/
-	@missed=0; for script in $(wildcard bench/*.py); do $(bin)/python "$$script" || missed=1; done; exit $$missed
+	@missed=0; for script in $(filter-out bench/_%,$(wildcard bench/*.py)); do $(bin)/python "$$script" || missed=1; done; exit $$missed
 
 fuzz: ## Random arrangements for a minute; SECONDS=3600 for longer, SEED=n to start elsewhere
 	GROUNDPLAN_FUZZ_SECONDS=$(or $(SECONDS),60) $(if $(SEED),GROUNDPLAN_FUZZ_SEED=$(SEED)) \

@@ -9,16 +9,14 @@ Ends with exit code 1 when reading takes more than a quarter of a byte of memory
 
 from __future__ import annotations
 
-import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from _watched import watched
 from PIL import Image
 
 import groundplan
@@ -83,31 +81,10 @@ FORMATS: dict[str, tuple[Callable[[Path, npt.NDArray[np.uint8]], None], list[str
 }
 
 
-def held(pid: int) -> int:
-    """Bytes that a process holds for itself."""
-    for line in Path(f"/proc/{pid}/status").read_text().splitlines():
-        if line.startswith("RssAnon:"):
-            return int(line.split()[1]) * 1024
-    return 0
-
-
 def measure(path: Path, modules: list[str], *, survey: bool) -> tuple[list[float], int]:
     """Seconds of reading, and of surveying, and the greatest memory on top of what was held before."""
-    words = [sys.executable, "-c", CHILD, str(path), "survey" if survey else "read", *modules]
-    pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-    with subprocess.Popen(words, **pipes) as child:
-        assert child.stdin is not None and child.stdout is not None
-        child.stdout.readline()
-        before = most = held(child.pid)
-        child.stdin.write("\n")
-        child.stdin.flush()
-        while child.poll() is None:
-            most = max(most, held(child.pid))
-            time.sleep(0.005)
-        times = [float(line) for line in child.stdout]
-    if child.returncode:
-        raise SystemExit(f"reading {path.name} failed")
-    return times, most - before
+    said, most = watched(["-c", CHILD, str(path), "survey" if survey else "read", *modules])
+    return [float(line) for line in said.splitlines()], most
 
 
 def main() -> int:

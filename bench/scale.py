@@ -10,15 +10,14 @@ from __future__ import annotations
 
 import argparse
 import json
-import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from _watched import watched
 
 from groundplan.simulate import office, warehouse
 
@@ -73,30 +72,10 @@ def write(path: Path, one: npt.NDArray[np.uint8], side: int) -> None:
             wide[: side - row].tofile(file)
 
 
-def held(pid: int) -> int:
-    """Bytes of memory that a process holds for itself."""
-    for line in Path(f"/proc/{pid}/status").read_text().splitlines():
-        if line.startswith("RssAnon:"):
-            return int(line.split()[1]) * 1024
-    return 0
-
-
 def measure(path: Path, threads: int) -> tuple[list[float], int]:
     """Seconds, seconds of all cores, lines, faces and labels; and the most memory beyond what was held before."""
-    words = [sys.executable, "-c", CHILD, str(path), str(RESOLUTION), str(threads)]
-    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as child:
-        assert child.stdin is not None and child.stdout is not None
-        child.stdout.readline()
-        before = most = held(child.pid)
-        child.stdin.write("\n")
-        child.stdin.flush()
-        while child.poll() is None:
-            most = max(most, held(child.pid))
-            time.sleep(0.005)
-        said = child.stdout.read()
-    if child.returncode:
-        raise SystemExit(f"the survey of {path.name} failed: {child.returncode}")
-    return json.loads(said), most - before
+    said, most = watched(["-c", CHILD, str(path), str(RESOLUTION), str(threads)])
+    return json.loads(said), most
 
 
 def main() -> int:

@@ -166,7 +166,7 @@ def test_centre_lines_that_cross_are_known() -> None:
 
 def test_names_do_not_stand_over_one_another() -> None:
     axes = Figure().add_axes((0, 0, 1, 1))
-    names = _names.AxesNames(axes, dots=10.0)
+    names = _names.Names(10.0, _names.on_axes(axes))
     names.take([5.0, 5.0], 8.0, 8.0)
     square = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]
     narrow = [[4.9, 4.9], [5.1, 4.9], [5.1, 5.1], [4.9, 5.1]]

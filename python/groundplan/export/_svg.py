@@ -127,16 +127,13 @@ class Drawing:
             ElementTree.SubElement(made, "title").text = one_line(title)
 
 
-class DrawingNames(Names):
-    """Names on a layer of a drawing."""
+def names_on(drawing: Drawing, layer: ElementTree.Element) -> Names:
+    """Writes names on a layer of a drawing."""
 
-    def __init__(self, drawing: Drawing, layer: ElementTree.Element) -> None:
-        super().__init__(1 / (drawing.mm * POINT_MM))
-        self.drawing, self.layer = drawing, layer
+    def put(at: Any, text: str, size: float, colour: str, zorder: float, angle: float) -> None:
+        drawing.text(layer, at, text, size * POINT_MM, angle, fill=colour)
 
-    def put(self, at: Any, text: str, size: float, colour: str, zorder: float, angle: float) -> None:
-        """Put a name on the layer."""
-        self.drawing.text(self.layer, at, text, size * POINT_MM, angle, fill=colour)
+    return Names(1 / (drawing.mm * POINT_MM), put)
 
 
 def _n(value: float) -> str:

@@ -13,7 +13,7 @@ from groundplan._errors import ParameterError
 from groundplan._files import write_bytes
 from groundplan._shapes import readable
 from groundplan.export._places import Place, places
-from groundplan.export._svg import Drawing, DrawingNames
+from groundplan.export._svg import Drawing, names_on
 from groundplan.figures import _style as ink
 from groundplan.figures._labels import JUNCTION_NAMES, door_direction, name_corridors, name_regions
 from groundplan.figures._panels import round_length
@@ -145,7 +145,7 @@ def _names(drawing: Drawing, survey: Survey, found: list[Place]) -> None:
     style = {"text_anchor": "middle", "stroke": "#ffffff", "paint_order": "stroke", "stroke_opacity": "0.85"}
     width = {"stroke_width": f"{0.5 * drawing.mm:.4f}"}
     layer = drawing.layer("name", "Names", style | width, upright=True)
-    names = DrawingNames(drawing, layer)
+    names = names_on(drawing, layer)
     kinds = {kind: survey.of_kind(kind) for kind in ("corridor", "junction", "region")}
     for label in kinds["junction"]:
         names.take(label["at"], 8, 8)

@@ -21,7 +21,7 @@ from matplotlib.transforms import IdentityTransform
 from groundplan._results import Label
 from groundplan._shapes import readable
 from groundplan.figures import _style as ink
-from groundplan.figures._names import AxesNames, Names, meetings, widest_gap
+from groundplan.figures._names import Names, meetings, on_axes, widest_gap
 from groundplan.survey import Survey
 
 Points = npt.NDArray[np.float64]
@@ -36,8 +36,7 @@ REGION_TYPE = (6.5, 5.0)
 def draw_labels(axes: Axes, survey: Survey) -> None:
     """Draw every label, the large beneath the small."""
     kinds = {kind: survey.of_kind(kind) for kind in ("region", "rack", "corridor", "junction", "door", "pillar")}
-    dots = points_per_metre(axes)
-    names = AxesNames(axes, dots)
+    names = Names(points_per_metre(axes), on_axes(axes))
     draw_regions(axes, kinds["region"])
     draw_racks(axes, kinds["rack"])
     draw_doors(axes, kinds["door"], survey)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
 Points = npt.NDArray[np.float64]
+#: Puts a name on what it is written on: the place, the name, its size in points, colour, zorder and degrees.
+Put = Callable[[Sequence[float] | Points, str, float, str, float, float], None]
 
 #: Width of a letter and height of a line to the size of the type.
 LETTER, LINE = 0.66, 1.0
@@ -21,8 +23,8 @@ CLEAR = 1.5
 class Names:
     """Writes names, and knows where something stands already; `dots` are points of type to a metre."""
 
-    def __init__(self, dots: float) -> None:
-        self.dots = dots
+    def __init__(self, dots: float, put: Put) -> None:
+        self.dots, self.put = dots, put
         self.taken: list[tuple[float, float, float, float]] = []
 
     def box(
@@ -50,26 +52,13 @@ class Names:
         self.take(at, LETTER * size * len(text), LINE * size, angle)
         self.put(at, text, size, colour, zorder, angle)
 
-    def put(
-        self, at: Sequence[float] | Points, text: str, size: float, colour: str, zorder: float, angle: float
-    ) -> None:
-        """Put a name on whatever it is written on."""
-        raise NotImplementedError
 
+def on_axes(axes: Axes) -> Put:
+    """Puts names on axes."""
 
-class AxesNames(Names):
-    """Names on axes."""
-
-    def __init__(self, axes: Axes, dots: float) -> None:
-        super().__init__(dots)
-        self.axes = axes
-
-    def put(
-        self, at: Sequence[float] | Points, text: str, size: float, colour: str, zorder: float, angle: float
-    ) -> None:
-        """Put a name on the axes."""
+    def put(at: Sequence[float] | Points, text: str, size: float, colour: str, zorder: float, angle: float) -> None:
         seam = [withStroke(linewidth=max(1.2, 0.28 * size), foreground=(1, 1, 1, 0.85))]
-        self.axes.text(
+        axes.text(
             at[0],
             at[1],
             text,
@@ -83,6 +72,8 @@ class AxesNames(Names):
             clip_on=True,
             path_effects=seam,
         )
+
+    return put
 
 
 def meetings(line: Points, others: Sequence[Points]) -> Points:
