@@ -16,12 +16,10 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
+from _maps import laid_out
 from _watched import watched
 from PIL import Image
 
-import groundplan
-
-EXAMPLE = Path(__file__).parents[1] / "examples" / "warehouse.yaml"
 SIDE, LEAST_BAR = 20_000, 256 << 20
 
 #: Says how long reading took, and keeps still until it was looked at.
@@ -95,9 +93,7 @@ def main() -> int:
     if not Path("/proc/self/status").exists():
         print("the memory of a process is only measured on Linux")
         return 0
-    small = np.asarray(groundplan.read(EXAMPLE).pixels)
-    across, down = (-(-side // n) for n in small.shape[::-1])
-    pixels = np.tile(small, (down, across))[:side, :side]
+    pixels = laid_out(side).pixels
     bar = max(LEAST_BAR, side * side // 4)
     print(f"{side} x {side} pixels, {side * side / 2**20:.0f} MiB at a byte each; bar: {bar >> 20} MiB")
     print("format  MiB on disk  read s  " + ("survey s  " if survey else "") + "peak MiB")

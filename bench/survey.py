@@ -19,7 +19,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
+from _maps import laid_out
 
 import groundplan as gp
 from groundplan import Map
@@ -34,13 +34,6 @@ ONE, FOUR, LARGE, SOBEL = 2.5, 1.0, 1.0, 3.0
 SHELL_S = 0.6
 
 Stages = dict[str, Callable[[], Any]]
-
-
-def laid_out(side: int) -> Map:
-    """The example's warehouse again and again, `side` pixels square."""
-    one = gp.read(ROOT / "examples" / "warehouse.yaml")
-    times = [-(-side // n) for n in one.pixels.shape]
-    return gp.from_array(np.ascontiguousarray(np.tile(one.pixels, times)[:side, :side]), one.resolution)
 
 
 def stages(map: Map, threads: int) -> Stages:

@@ -19,26 +19,17 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any, TypeVar
 
-import numpy as np
+from _maps import laid_out
 
 import groundplan as gp
 from groundplan import Map
 
-EXAMPLE = Path(__file__).parents[1] / "examples" / "warehouse.yaml"
 SIDE, PATCH, RUNS = 8000, 512, 3
 BAR = 1 / 20
 
 R = TypeVar("R")
-
-
-def laid_out(side: int) -> Map:
-    """The example's warehouse again and again, `side` pixels square."""
-    one = gp.read(EXAMPLE)
-    times = [-(-side // n) for n in one.pixels.shape]
-    return replace(one, pixels=np.ascontiguousarray(np.tile(one.pixels, times)[:side, :side]))
 
 
 def timed(task: Callable[[], R]) -> tuple[float, R]:

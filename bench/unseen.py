@@ -1,0 +1,100 @@
+"""Typed junctions and corridors of warehouses that nothing was chosen on: bench/unseen.py [SETS].
+
+The suite ``warehouses`` with other seeds, each site turned by up to 20 degrees more, and sites whose every measure is
+drawn at random: aisles of 2.4 to 4 m, bays of 2 to 3.6 m, up to half of them empty, and one of eight hard kinds each. A
+site that has no room for its rows is left out. SETS (default 1) makes as many of both, and of each the first is what
+docs/approaches.md tells of; no bar, so no exit code.
+"""
+
+from __future__ import annotations
+
+import random
+import statistics
+import sys
+import tomllib
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import groundplan
+from groundplan import ParameterError
+from groundplan.evaluate import score
+from groundplan.simulate import warehouse
+
+SUITE = Path(groundplan.__file__).parent / "evaluate" / "warehouses.toml"
+FIGURES = ("junction_f1", "junction_typed_f1", "corridor_recall", "corridor_precision")
+Options = dict[str, Any]
+
+
+def reseeded(number: int) -> list[Options]:
+    """The suite's sites from other seeds."""
+    sites = []
+    for case in tomllib.loads(SUITE.read_text())["case"]:
+        options = {name: value for name, value in case.items() if name not in ("name", "kind")}
+        seed = options["seed"] + 1000 * (4 * number + 1)
+        turn = random.Random(seed).uniform(-20, 20)
+        sites.append(options | {"seed": seed, "yaw": round(options.get("yaw", 0) + turn, 1)})
+    return sites
+
+
+def drawn(number: int) -> list[Options]:
+    """Sites with every measure at random."""
+    return [_drawn(9000 + 500 * number + n, n % 8) for n in range(24)]
+
+
+def _drawn(seed: int, kind: int) -> Options:
+    draw = random.Random(seed)
+    options: Options = {"seed": seed, "yaw": round(draw.uniform(-90, 90), 1)}
+    options |= {"width": round(draw.uniform(30, 56)), "depth": round(draw.uniform(22, 38))}
+    options |= {"aisle": round(draw.uniform(2.4, 4.0), 1), "cross_aisle": round(draw.uniform(2.6, 4.6), 1)}
+    options |= {"bay": round(draw.uniform(2.0, 3.6), 2), "rack_depth": round(draw.uniform(0.9, 1.4), 2)}
+    options |= {"cross_aisles": draw.choice([1, 1, 2, 2, 3]), "sparse": draw.choice([0, 0.1, 0.2, 0.3, 0.4, 0.5])}
+    options["clutter"] = round(draw.uniform(0, 1.2), 1)
+    if kind == 0:
+        return options | {"halls": 2, "gap": draw.choice([0.5, 3.0, 5.0]), "crosswise": draw.random() < 0.5}
+    if kind == 1:
+        return options | {"staggered": round(draw.uniform(5, 11))}
+    if kind == 2:
+        wing = draw.choice([-50, -40, -30, -20, 20, 30, 40, 50])
+        return options | {"wing": wing, "gap": draw.choice([2.0, 4.0])}
+    if kind == 3:
+        gap = draw.choice([0.5, 2.0, 4.0])
+        return options | {"halls": 3, "gap": gap, "crosswise": True, "width": 34, "depth": 24}
+    if kind == 4:
+        return options | {"bend": 0.2, "drift": 0.04}
+    if kind == 5:
+        return options | {"goods": round(draw.uniform(0.3, 0.7), 1), "clutter": 0.8}
+    if kind == 6:
+        return options | {"uneven": round(draw.uniform(0.3, 0.6), 1), "lidar_range": draw.choice([5.0, 8.0, 15.0])}
+    halls = {"staggered": 8, "halls": 2, "gap": 2.0, "goods": 0.3, "partial": 0.15}
+    return options | halls | {"skew": draw.choice([0, 8, -8])}
+
+
+def scores(options: Options) -> list[float] | None:
+    """The figures of one site; none where its rows have no room."""
+    try:
+        made = warehouse(**options)
+    except ParameterError:
+        return None
+    found = score(groundplan.survey(made.map, threads=1).to_dict(), made.truth)
+    return [float(found[name]) for name in FIGURES]
+
+
+def main() -> None:
+    """Make the sites, score them, print the table."""
+    sets = int(sys.argv[1]) if len(sys.argv) > 1 else 1
+    print(f"{'sites':15}{'count':>6}{'F1':>8}{'typed':>8}{'worst':>8}{'recall':>8}{'precision':>11}")
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
+        for number in range(sets):
+            for name, sites in (("other seeds", reseeded(number)), ("random", drawn(number))):
+                rows = [row for row in pool.map(scores, sites) if row is not None]
+                f1, typed, recall, precision = (statistics.mean(column) for column in zip(*rows, strict=True))
+                worst = min(row[1] for row in rows)
+                print(
+                    f"{name:15}{len(rows):6}{f1:8.3f}{typed:8.3f}{worst:8.3f}{recall:8.3f}{precision:11.3f}", flush=True
+                )
+
+
+if __name__ == "__main__":
+    main()
