@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import shapely
 from _exports import GOOD, ODD, demo, jones_farms, odd_names
+from conftest import ROOT
 from zoo import surveyed
 
 import groundplan
@@ -130,6 +131,35 @@ def test_spurs_and_wide_vehicles_keep_clear_of_what_is_occupied(options: dict[st
     if "spurs" in options:
         spurs = sum(lane.kind == "spur" for lane in roads.lanes)
         assert 0.8 * len(roads.faces) < spurs < len(roads.faces)  # pallets stand before some
+
+
+def test_a_map_of_coarse_pixels_has_a_road_map() -> None:
+    pixels = np.full((100, 160), 254, np.uint8)
+    pixels[[0, -1]] = pixels[:, [0, -1]] = 0
+    for row in (15, 35, 55, 75):
+        pixels[row : row + 10, 15:145] = 0
+    map = groundplan.from_array(pixels, 0.6)
+    survey = groundplan.survey(map, threads=1)
+    roads = road_map(survey, map=map)
+    assert {lane.name for lane in roads.lanes} == {"A01", "A02", "A03"} and not roads.blocked
+    # Lanes end 0.6 m before the walls: what is wider is in their way, and told by a pixel of the wall.
+    wide = road_map(survey, map=map, vehicle_width=3.0)
+    assert wide.lanes == [] and len(wide.blocked) >= 3
+    for piece in wide.blocked:
+        column, row = int(piece.at[0] / 0.6), 99 - int(piece.at[1] / 0.6)
+        assert pixels[row, column] == 0 and column in (0, 159)
+
+
+@pytest.mark.parametrize(("spurs", "least"), [(0.05, 35), (0.1, 35), (0.6, 55)])
+def test_spurs_may_end_nearer_to_a_face_than_a_pixel_is_wide(spurs: float, least: int) -> None:
+    map = groundplan.read(ROOT / "examples" / "warehouse.yaml")
+    roads = road_map(demo(), map=map, spurs=spurs)
+    made = [lane for lane in roads.lanes if lane.kind == "spur"]
+    assert len(roads.faces) == 60 >= len(made) >= least
+    faces = {face.id: face for face in roads.faces}
+    for lane in made:
+        face = faces[lane.id.removesuffix(".spur")]
+        assert math.dist(face.at, roads.nodes[lane.end].at) == pytest.approx(spurs, abs=0.15)
 
 
 def rows(*taken: tuple[float, float, float, float]) -> groundplan.Map:

@@ -236,7 +236,7 @@ class _Builder:
 
     def _block(self, id: str, a: int, b: int) -> None:
         if self.pixels is not None:
-            reach = max(self.vehicle or 0.0, 2 * CLEAR_M)
+            reach = max(self.vehicle or 0.0, 2 * CLEAR_M) + self.pixels.half
             self.blocked.append(Blocked(id, self.pixels.nearest(self.nodes[a].at, self.nodes[b].at, reach)))
 
     def passed(self) -> None:

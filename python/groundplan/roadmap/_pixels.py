@@ -64,12 +64,13 @@ class Pixels:
         s, d = self.beside(a, b, reach)
         length = math.dist(a, b)
         n = int(np.argmin(np.hypot(d, np.maximum(np.maximum(-s, s - length), 0.0))))
-        u, v = (b[0] - a[0]) / length, (b[1] - a[1]) / length
+        u, v = ((b[0] - a[0]) / length, (b[1] - a[1]) / length) if length else (1.0, 0.0)
         return float(a[0] + s[n] * u - d[n] * v), float(a[1] + s[n] * v + d[n] * u)
 
     def open(self, points: Sequence[Point], keep: float = CLEAR_M) -> bool:
         """Whether a line keeps so far from every occupied pixel."""
-        return self.clearance(points, 2 * keep) >= keep
+        # A pixel is near by its corner, and found by its middle: where pixels are wide, twice as far is not far enough.
+        return self.clearance(points, max(2 * keep, keep + 2 * self.half)) >= keep
 
     def free(self, a: Point, b: Point) -> bool:
         """Whether all pixels under a line are known to be free."""
