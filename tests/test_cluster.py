@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from _program import call, files, hall
+from _program import call, files, hall, write_pgm
 from zoo import FREE, OCCUPIED, RESOLUTION, UNKNOWN, ZOO
 
 import groundplan
@@ -53,11 +53,6 @@ def shaded() -> npt.NDArray[np.uint8]:
     picture = site()
     shades = np.random.default_rng(3).integers(0, 40, picture.shape).astype(np.uint8)
     return np.select([picture == OCCUPIED, picture == FREE], [shades, 255 - shades], UNKNOWN).astype(np.uint8)
-
-
-def write_pgm(path: Path, pixels: npt.NDArray[np.uint8]) -> Path:
-    path.write_bytes(b"P5\n%d %d\n255\n" % pixels.shape[::-1] + pixels.tobytes())
-    return path
 
 
 def write_zarr(path: Path, pixels: npt.NDArray[Any], **attributes: Any) -> Path:
@@ -109,7 +104,7 @@ def test_the_workers_read_their_own_rows(client: Any, tmp_path: Path) -> None:
         write_zarr(tmp_path / "site.zarr", site()),
         write_tiff(tmp_path / "site.tif", site()),
     ):
-        map, far = read_or_leave(path, FRAME, lambda far: tally(far.rows(0, far.shape[0])))
+        map, far, _ = read_or_leave(path, FRAME, lambda far: tally(far.rows(0, far.shape[0])))
         assert far is not None and map.pixels.strides == (0, 0)  # of their shape alone
         assert np.array_equal(far.rows(70, 333), groundplan.read(path, **FRAME).pixels[70:333])
         found = same(path, client, **FRAME)
@@ -226,7 +221,7 @@ def test_where_there_are_no_workers_it_is_told(
     assert ran.code != 0 and "has no workers" in ran.err and "dask worker tcp://" in ran.err
 
 
-def test_what_is_no_client_is_refused(client: Any) -> None:
+def test_what_is_no_client_is_refused(cluster: Any) -> None:
     for other in ("tcp://127.0.0.1:8786", cluster):
         with pytest.raises(groundplan.ParameterError, match="the client is a ") as caught:
             groundplan.survey(hall(), resolution=RESOLUTION, client=other)

@@ -101,7 +101,7 @@ def test_only_what_the_patch_touches_is_looked_at(monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr("groundplan._update._core.find_gradients_in", spy)
     survey.update(PATCH, 100, 50)
-    reach = _core.reach(groundplan.stages.layout(map), {})
+    reach = _core.reach(map.resolution, {})
     top = map.height - 100
     assert asked == [((top - 40 - reach, top + reach), (50 - reach, 80 + reach))]
 

@@ -110,15 +110,13 @@ def open_map(path: str | os.PathLike[str], reading: dict[str, Any], client: Any)
         As `groundplan.read`; ``cluster.path`` where a worker has no such file.
     """
     checked(client)
-    counted: list[Tally] = []
 
     def count(far: Distant) -> Tally:
         spans = cut(far.shape, far.block, client)
-        counted.append(summed(list(gather(client, count_rows, [(far, span) for span in spans]))))
-        return counted[0]
+        return summed(list(gather(client, count_rows, [(far, span) for span in spans])))
 
-    map, far = read_or_leave(path, reading, count)
-    return Site(map, far, counted[0].counts if counted else None)
+    map, far, known = read_or_leave(path, reading, count)
+    return Site(map, far, None if known is None else known.counts)
 
 
 def survey_site(
@@ -141,17 +139,14 @@ def survey_site(
     map, far, values = site.map, site.distant, named(parameters)
     block = 1 if far is None else far.block
     spans = cut(map.pixels.shape, block, client)
-    reach = _core.reach(layout(replace(map, pixels=np.broadcast_to(np.uint8(0), (1, 1)))), values)
-
-    def pixels_of(span: Span) -> Any:
-        """Where a worker gets the rows from: the file, or a copy that is sent to it."""
-        return far if far is not None else client.scatter(np.ascontiguousarray(map.pixels[slice(*span)]))
-
+    reach = _core.reach(map.resolution, values)
     meaning = map.values, map.states, map.resolution, map.origin
-    tasks = []
+    sources: list[tuple[Any, Span, Span]] = []
     for span in spans:
         held = max(span[0] - reach, 0), min(span[1] + reach, map.height)
-        tasks.append((pixels_of(held), held, span, map.height, meaning, values, far is not None))
+        sent = far if far is not None else client.scatter(np.ascontiguousarray(map.pixels[slice(*held)]))
+        sources.append((sent, held, span))
+    tasks: list[tuple[Any, ...]] = [(*source, map.height, meaning, values) for source in sources]
     found: list[dict[str, Any]] = []
     exact = True
     if far is None:
@@ -169,12 +164,15 @@ def survey_site(
     gradients = {name: np.concatenate([part.pop(name) for part in reversed(found)]) for name in list(found[0])}
     grid = layout(map)
     directions = own.get("directions") or run(_core.find_directions, grid, gradients, values)
-    radiograms = run(_core.find_radiograms, grid, gradients, directions, values)
-    lines = own.get("lines") or run(_core.find_lines, radiograms, values)
-    faces = len(run(_core.subdivide, grid, directions, lines)["areas"])
-    sources = [(pixels_of(span), span, map.height, meaning, directions, lines) for span in spans]
-    sums = np.zeros((faces, 8), np.int64)
-    for which, rows in gather(client, add_faces, sources):
+    lines = own.get("lines")
+    if lines is None:
+        lines = run(_core.find_lines, run(_core.find_radiograms, grid, gradients, directions, values), values)
+    # Those of no rows at all: a row of noughts for each face, and lines that do not fit are refused here.
+    sums = run(_core.sum_faces, grid, (map.height, 0), (0, 0), directions, lines, 1)
+    if far is not None:
+        sources = [(far, span, span) for span in spans]  # a face needs no rows beside the band: they are not read again
+    tasks = [(*source, map.height, meaning, directions, lines) for source in sources]
+    for which, rows in gather(client, add_faces, tasks):
         sums[which] += rows
     parts_known = {"gradients": gradients, "directions": directions, "lines": lines, "sums": sums}
     made = surveyed(map, parameters, threads, own, parts_known, keep=keep)

@@ -18,11 +18,7 @@ if TYPE_CHECKING:
 
 
 def to_networkx(survey: Survey) -> networkx.Graph[int]:
-    """The adjacency graph: faces as nodes, links as edges. Needs networkx.
-
-    A node has its ``centre``, ``area``, ``occupancy`` and ``state``, an edge the ``edge`` that it crosses and
-    whether it is ``connected``. Two faces meet in one edge at most.
-    """
+    """As `Survey.to_networkx`."""
     nx = needed("networkx", "graph")
     graph = nx.Graph()
     for face, (centre, area) in enumerate(
@@ -42,11 +38,7 @@ def to_networkx(survey: Survey) -> networkx.Graph[int]:
 
 
 def to_shapely(survey: Survey) -> dict[str, npt.NDArray[np.object_]]:
-    """Geometries in the map frame, in the order of their ids. Needs shapely.
-
-    ``faces`` and ``labels`` are polygons, ``edges`` and ``walls`` line strings, ``vertices`` points. A label
-    without a polygon, such as a door, is None.
-    """
+    """As `Survey.to_shapely`."""
     shapely = needed("shapely", "geometry")
     cut = survey.subdivision
     rings = shapely.linearrings(

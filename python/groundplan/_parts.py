@@ -30,30 +30,31 @@ def count_rows(far: Distant, span: Span) -> Tally:
 
 
 def look(
-    source: Distant | Bytes, held: Span, span: Span, height: int, meaning: Any, values: dict[str, Any], packs: bool
+    source: Distant | Bytes, held: Span, span: Span, height: int, meaning: Any, values: dict[str, Any]
 ) -> tuple[dict[str, Any], bytes]:
-    """Gradients of a band, of which more rows are held, and the states of its pixels where they are asked for."""
+    """Gradients of a band, of which more rows are held, and of a file the states of its pixels: who asks lacks them."""
     pixels = source.rows(*held) if isinstance(source, Distant) else source
     grid = layout(Map(pixels, *meaning))
     width = pixels.shape[1]
     rows = height - span[1], height - span[0]
     part = _core.find_gradients_in(grid, (height, height - held[1]), rows, (0, width), values, 1)
     own = pixels[span[0] - held[0] : span[1] - held[0]]
-    return part, packed(meaning[1][own]) if packs else b""
+    return part, packed(meaning[1][own]) if isinstance(source, Distant) else b""
 
 
 def add_faces(
     source: Distant | Bytes,
+    held: Span,
     span: Span,
     height: int,
     meaning: Any,
     directions: dict[str, Any],
     lines: dict[str, Any],
 ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """What a band adds to the faces that it meets: which they are, and a row of sums for each."""
-    pixels = source.rows(*span) if isinstance(source, Distant) else source
+    """What a band adds to the faces that it meets: which they are, and a row of sums for each. More may be held."""
+    pixels = source.rows(*held) if isinstance(source, Distant) else source
     rows = height - span[1], height - span[0]
-    sums = _core.sum_faces(layout(Map(pixels, *meaning)), (height, rows[0]), rows, directions, lines, 1)
+    sums = _core.sum_faces(layout(Map(pixels, *meaning)), (height, height - held[1]), rows, directions, lines, 1)
     which = np.flatnonzero(sums.any(axis=1))
     return which, sums[which]
 

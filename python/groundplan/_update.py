@@ -1,12 +1,14 @@
 """A survey after its map has changed: gradients around the change are found anew, all others are kept.
 
-A pixel bears on the gradients within some thirty pixels of it. What is found there takes the place of what was there,
-so the gradients are those of the whole map as it is now, and with them every stage that follows.
+A pixel bears on the gradients around it as far as their window reaches: 8 to 33 pixels. What is found there takes the
+place of what was there, so the gradients are those of the whole map as it is now, and with them every stage that
+follows.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +20,7 @@ from groundplan._errors import ParameterError
 from groundplan._results import record
 from groundplan.maps import Map
 from groundplan.maps._canvas import Canvas
-from groundplan.maps._source import Bytes, bands
+from groundplan.maps._source import Bytes, Span, bands
 from groundplan.parameters import named
 from groundplan.stages import cores, layout
 
@@ -29,7 +31,6 @@ if TYPE_CHECKING:
 ROWS = 64
 
 #: Rows and columns from the map's lower left: from, to.
-Span = tuple[int, int]
 Area = tuple[Span, Span]
 
 
@@ -46,24 +47,25 @@ def update(survey: Survey, change: Any, row: int | None, column: int | None, thr
     if isinstance(change, Map):
         if row is not None or column is not None:
             raise ParameterError("update.patch", "a whole map has no row and no column")
-        new = change
-        if not comparable(old, new):
-            return surveyed(new, parameters, threads, own, {}, keep=True)
-        areas = list(differing(old.pixels, new.pixels))
+        new, alike = change, comparable(old, change)
+        areas = list(differing(old.pixels, new.pixels)) if alike else []
+        if alike and not areas and (old.image, old.warnings) == (new.image, new.warnings):
+            return survey
     else:
-        new, area = patched(old, change, row, column)
-        areas = [area] if changes(old, new, area) else []
-    if not areas and (old.image, old.warnings) == (new.image, new.warnings):
-        return survey
-    gradients = known.get("_gradients")
-    reach = _core.reach(layout(new), named(parameters))
+        pixels, area = fitted(old, change, row, column)
+        if not changes(old, pixels, area):
+            return survey
+        new, alike, areas = patched(old, pixels, area), True, [area]
+    gradients, values = known.get("_gradients"), named(parameters)
+    reach = _core.reach(new.resolution, values)
     areas = [wider(area, reach, new) for area in areas]
     looked_at = sum((top - low) * (right - left) for (low, top), (left, right) in areas)
-    if gradients is None or 2 * looked_at > new.pixels.size:
+    if not alike or gradients is None or 2 * looked_at > new.pixels.size:
         return surveyed(new, parameters, threads, own, {}, keep=True)
-    before = gradients
+    before, grid, count = gradients, layout(new), cores(threads)
     for area in areas:
-        gradients = replaced(gradients, new, area, parameters, cores(threads))
+        fresh = _core.find_gradients_in(grid, (new.height, 0), *area, values, count)
+        gradients = replaced(gradients, fresh, area)
     parts = {"gradients": gradients}
     if all(np.array_equal(before[name], gradients[name]) for name in before):
         # Nothing that is occupied has changed: the lines stay, be they on other ground.
@@ -99,15 +101,14 @@ def differing(old: Bytes, new: Bytes) -> Iterator[Area]:
         yield found
 
 
-def changes(old: Map, new: Map, area: Area) -> bool:
+def changes(old: Map, patch: Bytes, area: Area) -> bool:
     """Whether anything is different there."""
     (low, top), across = area
-    lies = slice(old.height - top, old.height - low), slice(*across)
-    return not np.array_equal(old.pixels[lies], new.pixels[lies])
+    return not np.array_equal(old.pixels[old.height - top : old.height - low, slice(*across)], patch)
 
 
-def patched(map: Map, patch: Any, row: int | None, column: int | None) -> tuple[Map, Area]:
-    """The map with the patch in it, and where that is.
+def fitted(map: Map, patch: Any, row: int | None, column: int | None) -> tuple[Bytes, Area]:
+    """The patch as values of the map's pixels, its top row first, and where in the map it lies.
 
     Raises
     ------
@@ -123,18 +124,23 @@ def patched(map: Map, patch: Any, row: int | None, column: int | None) -> tuple[
         said = f"a patch of {rows} rows and {columns} columns from row {row} and column {column} on"
         raise ParameterError("update.patch", f"{said} does not lie in a map of {height} rows and {width} columns")
     upwards = np.asarray(patch).dtype == np.int8
-    top, left = int(height - row - rows if upwards else row), int(column)
+    low, left = int(row if upwards else height - row - rows), int(column)
+    return pixels, ((low, low + rows), (left, left + columns))
+
+
+def patched(map: Map, patch: Bytes, area: Area) -> Map:
+    """The map with the patch in it."""
+    (height, width), ((low, high), across) = map.pixels.shape, area
+    top, end = height - high, height - low
     with Canvas(Path(map.image), height, width) as canvas:
         for part in bands(height, width):
             own = map.pixels[part]
-            first, last = max(top, part.start), min(top + rows, part.stop)
+            first, last = max(top, part.start), min(end, part.stop)
             if first < last:
                 own = own.copy()
-                own[first - part.start : last - part.start, left : left + columns] = pixels[first - top : last - top]
+                own[first - part.start : last - part.start, slice(*across)] = patch[first - top : last - top]
             canvas.put(part.start, own)
-        made = canvas.pixels()
-    area = (height - top - rows, height - top), (left, left + columns)
-    return Map(made, map.values, map.states, map.resolution, map.origin, map.image, map.warnings), area
+        return replace(map, pixels=canvas.pixels())
 
 
 def as_pixels(map: Map, patch: npt.NDArray[Any]) -> Bytes:
@@ -164,11 +170,8 @@ def wider(area: Area, reach: int, map: Map) -> Area:
     return (max(low - reach, 0), min(top + reach, map.height)), (max(left - reach, 0), min(right + reach, map.width))
 
 
-def replaced(
-    gradients: dict[str, Any], map: Map, area: Area, parameters: dict[str, Any], threads: int
-) -> dict[str, Any]:
-    """The gradients with those of an area found anew."""
-    fresh = _core.find_gradients_in(layout(map), (map.height, 0), *area, named(parameters), threads)
+def replaced(gradients: dict[str, Any], fresh: dict[str, Any], area: Area) -> dict[str, Any]:
+    """The gradients with fresh ones of an area."""
     (low, top), (left, right) = area
     x, y = gradients["pixels"].T
     first, last = np.searchsorted(y, low), np.searchsorted(y, top)

@@ -40,10 +40,8 @@ impl Layout<'_> {
 
     /// Runs a stage over the pixels where they lie, with Python's lock released.
     pub fn with_grid<T: Send>(&self, py: Python<'_>, stage: impl FnOnce(&Grid) -> T + Send) -> PyResult<T> {
-        let pixels = self.0.as_slice()?;
-        let table = self.table()?;
-        let grid = Grid::new(pixels, self.1, &table, self.frame());
-        Ok(py.detach(|| stage(&grid)))
+        let Frame { width, height, .. } = self.frame();
+        self.with_part(py, (height, 0), [(0, height), (0, width)], 0, |grid, _| stage(grid))
     }
 }
 
@@ -61,13 +59,12 @@ impl Layout<'_> {
         py: Python<'_>,
         (height, first): Held,
         [rows, columns]: [Span; 2],
-        reach: impl FnOnce(&Frame) -> usize,
+        reach: usize,
         stage: impl FnOnce(&Grid, [std::ops::Range<usize>; 2]) -> T + Send,
     ) -> PyResult<T> {
         let shape = self.0.as_array().dim();
         let held = first..first.saturating_add(shape.0);
         let frame = Frame::new(shape.1, height, self.4, self.5);
-        let reach = reach(&frame);
         let within = |(from, to): Span, end: usize| from <= to && to <= end;
         let sees = rows.0.saturating_sub(reach) >= held.start && rows.1.saturating_add(reach).min(height) <= held.end;
         demand(
@@ -148,15 +145,24 @@ fn demand(fits: bool, sentence: &str) -> PyResult<()> {
 }
 
 /// Lines and the directions that they name.
-pub fn demand_directions(lines: &Lines, directions: &Directions) -> PyResult<()> {
+fn demand_directions(lines: &Lines, directions: &Directions) -> PyResult<()> {
     let known = |&d: &u32| (d as usize) < directions.angles.len();
     demand(lines.directions.iter().all(known), "a line names a direction that there is not")
 }
 
-/// Gradients and the grid that they lie on.
-pub fn demand_grid(gradients: &Gradients, frame: &Frame) -> PyResult<()> {
+/// Directions, and lines of them.
+pub fn lines_of(directions: &Bound<'_, PyDict>, lines: &Bound<'_, PyDict>) -> PyResult<(Directions, Lines)> {
+    let made = (self::directions(directions)?, self::lines(lines)?);
+    demand_directions(&made.1, &made.0)?;
+    Ok(made)
+}
+
+/// Gradients that lie on the grid.
+pub fn gradients_on(dict: &Bound<'_, PyDict>, frame: &Frame) -> PyResult<Gradients> {
+    let made = gradients(dict)?;
     let inside = |p: &[u32; 2]| (p[0] as usize) < frame.width && (p[1] as usize) < frame.height;
-    demand(gradients.pixels.iter().all(inside), "the gradients have pixels outside this map")
+    demand(made.pixels.iter().all(inside), "the gradients have pixels outside this map")?;
+    Ok(made)
 }
 
 /// A row for each face: percent, unknown, free and pixels of the pixels within it, then of the one under a sliver.
@@ -190,7 +196,7 @@ pub fn given(dict: &Bound<'_, PyDict>, frame: &Frame) -> PyResult<Given> {
         dict.get_item(name)?.map(|item| item.cast_into().map_err(Into::into)).transpose()
     };
     let given = Given {
-        gradients: record("gradients")?.as_ref().map(gradients).transpose()?,
+        gradients: record("gradients")?.map(|dict| gradients_on(&dict, frame)).transpose()?,
         directions: record("directions")?.as_ref().map(directions).transpose()?,
         lines: record("lines")?.as_ref().map(lines).transpose()?,
         sums: dict.get_item("sums")?.as_ref().map(sums).transpose()?,
@@ -198,9 +204,6 @@ pub fn given(dict: &Bound<'_, PyDict>, frame: &Frame) -> PyResult<Given> {
     if let Some(lines) = &given.lines {
         let none = Directions::default();
         demand_directions(lines, given.directions.as_ref().unwrap_or(&none))?;
-    }
-    if let Some(gradients) = &given.gradients {
-        demand_grid(gradients, frame)?;
     }
     Ok(given)
 }
@@ -297,7 +300,7 @@ pub fn from_gradients(py: Python<'_>, made: Gradients) -> PyResult<Bound<'_, PyD
         .done())
 }
 
-pub fn gradients(dict: &Bound<'_, PyDict>) -> PyResult<Gradients> {
+fn gradients(dict: &Bound<'_, PyDict>) -> PyResult<Gradients> {
     let made = Gradients {
         pixels: pairs(dict, "pixels")?,
         angles: list(dict, "angles")?,

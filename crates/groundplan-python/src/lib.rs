@@ -12,8 +12,8 @@ mod _core {
     use crate::convert::{self, Layout, Named};
     #[pymodule_export]
     use crate::queries::{Locator, Ways};
-    use groundplan::{Frame, subdivision::Subdivision, sums::FaceSums, walls};
     use groundplan::{TABLE, adjacency, arrangement, directions, gradients, labels, lines, occupancy, radiograms};
+    use groundplan::{subdivision::Subdivision, sums::FaceSums, walls};
     use numpy::PyArray2;
     use pyo3::prelude::*;
     use pyo3::types::PyDict;
@@ -90,7 +90,7 @@ mod _core {
         threads: usize,
     ) -> PyResult<Bound<'py, PyDict>> {
         let parameters = convert::parameters(parameters)?;
-        let reach = |frame: &Frame| gradients::reach(frame, &parameters);
+        let reach = gradients::reach(layout.frame().resolution, &parameters);
         let made = layout.with_part(py, held, [rows, columns], reach, |grid, [rows, columns]| {
             gradients::find_gradients_in(grid, rows, columns, &parameters, threads)
         })?;
@@ -99,8 +99,8 @@ mod _core {
 
     /// How far a pixel bears on gradients around it, pixels.
     #[pyfunction]
-    fn reach(layout: Layout<'_>, parameters: &Bound<'_, PyDict>) -> PyResult<usize> {
-        Ok(gradients::reach(&layout.frame(), &convert::parameters(parameters)?))
+    fn reach(resolution: f64, parameters: &Bound<'_, PyDict>) -> PyResult<usize> {
+        Ok(gradients::reach(resolution, &convert::parameters(parameters)?))
     }
 
     /// II-A: dominant directions.
@@ -111,9 +111,9 @@ mod _core {
         gradients: &Bound<'py, PyDict>,
         parameters: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let gradients = convert::gradients(gradients)?;
-        convert::demand_grid(&gradients, &layout.frame())?;
-        let made = directions::find_directions(&layout.frame(), &gradients, &convert::parameters(parameters)?);
+        let frame = layout.frame();
+        let gradients = convert::gradients_on(gradients, &frame)?;
+        let made = directions::find_directions(&frame, &gradients, &convert::parameters(parameters)?);
         convert::from_directions(py, made)
     }
 
@@ -126,13 +126,10 @@ mod _core {
         directions: &Bound<'py, PyDict>,
         parameters: &Bound<'py, PyDict>,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let (gradients, directions) = (convert::gradients(gradients)?, convert::directions(directions)?);
-        convert::demand_grid(&gradients, &layout.frame())?;
-        let parameters = convert::parameters(parameters)?;
-        convert::from_radiograms(
-            py,
-            &radiograms::find_radiograms(&layout.frame(), &gradients, &directions, &parameters),
-        )
+        let frame = layout.frame();
+        let gradients = convert::gradients_on(gradients, &frame)?;
+        let (directions, parameters) = (convert::directions(directions)?, convert::parameters(parameters)?);
+        convert::from_radiograms(py, &radiograms::find_radiograms(&frame, &gradients, &directions, &parameters))
     }
 
     /// II-B: the wavelet response that a radiogram's peaks are read from: widths in metres, and a row for each.
@@ -166,8 +163,7 @@ mod _core {
         directions: &Bound<'py, PyDict>,
         lines: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (directions, lines) = (convert::directions(directions)?, convert::lines(lines)?);
-        convert::demand_directions(&lines, &directions)?;
+        let (directions, lines) = convert::lines_of(directions, lines)?;
         let frame = layout.frame();
         let made = arrangement::arrange(&frame, &directions.angles, &lines);
         convert::from_subdivision(py, Subdivision::new(&frame, made))
@@ -190,18 +186,11 @@ mod _core {
         lines: &Bound<'py, PyDict>,
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray2<i64>>> {
-        let (directions, lines) = (convert::directions(directions)?, convert::lines(lines)?);
-        convert::demand_directions(&lines, &directions)?;
-        let made = layout.with_part(
-            py,
-            held,
-            [rows, (0, 0)],
-            |_| 0,
-            |grid, [rows, _]| {
-                let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines);
-                FaceSums::new(grid, &arrangement, rows, threads)
-            },
-        )?;
+        let (directions, lines) = convert::lines_of(directions, lines)?;
+        let made = layout.with_part(py, held, [rows, (0, 0)], 0, |grid, [rows, _]| {
+            let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines);
+            FaceSums::new(grid, &arrangement, rows, threads)
+        })?;
         convert::from_sums(py, &made)
     }
 
@@ -216,10 +205,9 @@ mod _core {
         parameters: &Bound<'py, PyDict>,
         threads: usize,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (directions, lines) = (convert::directions(directions)?, convert::lines(lines)?);
-        convert::demand_directions(&lines, &directions)?;
-        let (gradients, parameters) = (convert::gradients(gradients)?, convert::parameters(parameters)?);
-        convert::demand_grid(&gradients, &layout.frame())?;
+        let (directions, lines) = convert::lines_of(directions, lines)?;
+        let gradients = convert::gradients_on(gradients, &layout.frame())?;
+        let parameters = convert::parameters(parameters)?;
         let made = layout.with_grid(py, |grid| {
             let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines);
             let sums = FaceSums::new(grid, &arrangement, 0..grid.frame.height, threads);
@@ -268,11 +256,9 @@ mod _core {
         parameters: &Bound<'py, PyDict>,
         threads: usize,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let (directions, lines) = (convert::directions(directions)?, convert::lines(lines)?);
-        convert::demand_directions(&lines, &directions)?;
-        let (gradients, parameters) = (convert::gradients(gradients)?, convert::parameters(parameters)?);
+        let (directions, lines) = convert::lines_of(directions, lines)?;
         let frame = layout.frame();
-        convert::demand_grid(&gradients, &frame)?;
+        let (gradients, parameters) = (convert::gradients_on(gradients, &frame)?, convert::parameters(parameters)?);
         let subdivision = Subdivision::new(&frame, arrangement::arrange(&frame, &directions.angles, &lines));
         let (occupancy, walls) = (convert::occupancy(occupancy)?, convert::walls(walls)?);
         let states = occupancy.states.len().min(occupancy.faces.len());

@@ -51,8 +51,7 @@ impl Locator {
         offsets: Vec<usize>,
         labels: Vec<u32>,
     ) -> PyResult<Self> {
-        let (directions, lines) = (convert::directions(directions)?, convert::lines(lines)?);
-        convert::demand_directions(&lines, &directions)?;
+        let (directions, lines) = convert::lines_of(directions, lines)?;
         let rings: Vec<_> = labels.into_iter().zip(rings(&ring_points, &offsets)?).collect();
         let faces = locate::Locator::new(&frame(place), &directions.angles, &lines);
         Ok(Self { faces, labels: Polygons::new(&rings) })

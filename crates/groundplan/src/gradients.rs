@@ -6,7 +6,7 @@
 //! eigenvalues' disparity is the gradient's magnitude. Sums of integers only, so nothing depends on the order.
 
 use crate::bands::map_bands;
-use crate::grid::{Frame, Grid, State, undirected};
+use crate::grid::{Grid, State, undirected};
 use crate::parameters::Parameters;
 use std::ops::Range;
 
@@ -27,16 +27,16 @@ const MIN_RADIUS: usize = 7;
 const MAX_RADIUS: usize = 32;
 
 /// Radius of the window, pixels.
-fn radius(frame: &Frame, parameters: &Parameters) -> usize {
-    let radius = (parameters.gradients_radius / frame.resolution).round();
+fn radius(resolution: f64, parameters: &Parameters) -> usize {
+    let radius = (parameters.gradients_radius / resolution).round();
     (radius.clamp(0.0, MAX_RADIUS as f64) as usize).clamp(MIN_RADIUS, MAX_RADIUS)
 }
 
 /// How far a pixel bears on gradients around it, pixels along either axis: on those of the edge pixels whose window holds
-/// it or a neighbour of it.
+/// it or a neighbour of it. The resolution is in metres per pixel.
 #[must_use]
-pub fn reach(frame: &Frame, parameters: &Parameters) -> usize {
-    radius(frame, parameters) + 1
+pub fn reach(resolution: f64, parameters: &Parameters) -> usize {
+    radius(resolution, parameters) + 1
 }
 
 /// Finds the edge pixels and their gradients.
@@ -55,7 +55,7 @@ pub fn find_gradients_in(
     parameters: &Parameters,
     threads: usize,
 ) -> Gradients {
-    let radius = radius(&grid.frame, parameters);
+    let radius = radius(grid.frame.resolution, parameters);
     let around = |range: &Range<usize>, end: usize| range.start.saturating_sub(radius)..(range.end + radius).min(end);
     let (window, across) = (around(&rows, grid.frame.height), around(&columns, grid.frame.width));
     let shifted = |band: Range<usize>, by: usize| band.start + by..band.end + by;

@@ -55,14 +55,13 @@ class Distant:
             return mapped
         path = Path(self.path)
         if self.kind == "zarr":
-            from groundplan.maps.zarr_array import read_zarr
+            from groundplan.maps.zarr_array import read_rows
 
-            content = read_zarr(path, rows=(top, end)).content
-        else:
-            from groundplan.maps.geotiff import read_geotiff
+            return read_rows(path, (top, end))
+        from groundplan.maps.geotiff import read_geotiff
 
-            # The frame is known: whoever describes the map has looked at it.
-            content = read_geotiff(path, 1.0, posed=False, luma=self.luma, rows=(top, end)).content
+        # The frame is known: whoever describes the map has looked at it.
+        content = read_geotiff(path, 1.0, posed=False, luma=self.luma, rows=(top, end)).content
         assert content is not None
         return content.pixels
 

@@ -111,10 +111,10 @@ def read_or_leave(
     given: dict[str, Any],
     count: Callable[[Distant], Tally] | None = None,
     progress: Progress | None = None,
-) -> tuple[Map, Distant | None]:
+) -> tuple[Map, Distant | None, Tally | None]:
     """As `read`; or where the file can be read row by row and others `count` its pixels, a map without them.
 
-    Such a map has the right shape and stands for the file that comes with it.
+    Such a map has the right shape and stands for the file that comes with it, as does what was counted.
     """
     resolution, origin, dialect = given.get("resolution"), given.get("origin"), given.get("dialect", "nav2")
     place = Path(path).expanduser() if str(path).startswith("~") else Path(path)
@@ -152,7 +152,7 @@ def read_or_leave(
         pixels = np.broadcast_to(np.uint8(0), far.shape)
     if resolution is None and kind in ("yaml", "image"):
         warnings += rounded(metres, pixels.shape)
-    return Map(pixels, values, states, metres, pose, described.image.name, tuple(warnings + odd)), far
+    return Map(pixels, values, states, metres, pose, described.image.name, tuple(warnings + odd)), far, known
 
 
 def _opened(

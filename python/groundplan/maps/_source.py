@@ -83,7 +83,7 @@ class Described:
     content : Picture, Occupancies or None
         The pixels, where they were read together with what is said of them.
     shape : (int, int) or None
-        Rows and columns of all pixels, where only some rows were read.
+        Rows and columns of all pixels, where the source can be read by rows.
     block : int
         Rows that are stored together, and best read so.
     """

@@ -8,6 +8,8 @@ Source: Zarr specification, versions 2 and 3, as the library `zarr` reads it.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +18,7 @@ import numpy as np
 from groundplan._errors import GroundplanError, MapError
 from groundplan._extras import needed
 from groundplan.maps._canvas import Canvas
-from groundplan.maps._source import Described, Occupancies, Picture, Progress, Span
+from groundplan.maps._source import Bytes, Described, Occupancies, Picture, Progress, Span
 from groundplan.maps.map_server import check_mode, check_negate, check_origin, check_resolution, check_threshold
 
 #: Pixels that are read at a time at the least, and a row of chunks at the most, in bytes.
@@ -33,9 +35,7 @@ def read_zarr(path: Path, *, rows: Span | None = None, progress: Progress | None
     GroundplanError
         ``extra.missing``.
     """
-    zarr = needed("zarr", "large")
-    try:
-        array = _array(path, zarr.open(str(path), mode="r"))
+    with _opened(path) as array:
         where, fields = str(path), dict(array.attrs)
         if array.ndim != 2 or array.dtype not in (np.uint8, np.int8) or 0 in array.shape:
             said = f"{where} is an array of {array.dtype} and shape {tuple(array.shape)}"
@@ -46,11 +46,6 @@ def read_zarr(path: Path, *, rows: Span | None = None, progress: Progress | None
             )
         block = _block(array)
         pixels = _pixels(path, array, block, progress) if rows is None else _rows(array, rows)
-    except (GroundplanError, MemoryError):
-        raise
-    except Exception as fault:  # a store can be damaged anywhere
-        said = " ".join(f"{type(fault).__name__}: {fault}".split())
-        raise MapError("map.corrupt", f"{path} is a damaged Zarr array: {said}") from fault
     origin, warnings = check_origin(fields["origin"], where) if "origin" in fields else (None, [])
     high, low = (
         check_threshold(fields[name], name, where) if name in fields else None
@@ -69,6 +64,34 @@ def read_zarr(path: Path, *, rows: Span | None = None, progress: Progress | None
         tuple(array.shape),
         block,
     )
+
+
+def read_rows(path: Path, rows: Span) -> Bytes:
+    """Rows of a map, from, to, that `read_zarr` has looked at: the chunks beside them are not even listed.
+
+    Raises
+    ------
+    MapError
+        ``map.corrupt``.
+    GroundplanError
+        ``extra.missing``.
+    """
+    with _opened(path) as array:
+        pixels = _rows(array, rows)
+    return pixels if array.dtype == np.uint8 else pixels[::-1]
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """The array, and an error of Groundplan's for whatever goes wrong with it."""
+    zarr = needed("zarr", "large")
+    try:
+        yield _array(path, zarr.open(str(path), mode="r"))
+    except (GroundplanError, MemoryError):
+        raise
+    except Exception as fault:  # a store can be damaged anywhere
+        said = " ".join(f"{type(fault).__name__}: {fault}".split())
+        raise MapError("map.corrupt", f"{path} is a damaged Zarr array: {said}") from fault
 
 
 def _array(path: Path, found: Any) -> Any:
@@ -90,11 +113,12 @@ def _block(array: Any) -> int:
     return int(min(array.shape[0], (getattr(array, "shards", None) or array.chunks)[0]))
 
 
-def _rows(array: Any, rows: Span) -> Any:
+def _rows(array: Any, rows: Span) -> Bytes:
     """Some rows of the map, counted from its top, as they lie."""
     height, (top, end) = array.shape[0], rows
     lies = slice(top, end) if array.dtype == np.uint8 else slice(height - end, height - top)
-    return np.ascontiguousarray(array[lies]).view(np.uint8)
+    pixels: Bytes = np.ascontiguousarray(array[lies]).view(np.uint8)
+    return pixels
 
 
 def _pixels(path: Path, array: Any, chunk: int, progress: Progress | None) -> Any:
