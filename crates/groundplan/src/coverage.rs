@@ -1,6 +1,7 @@
 //! II-D: O(edge), and where on the edges it lies, by the edge pixels that cover them.
 
 use crate::arrangement::Arrangement;
+use crate::bits::runs;
 use crate::directions::Directions;
 use crate::gradients::Gradients;
 use crate::grid::{Frame, tidy};
@@ -105,8 +106,8 @@ pub fn cover_edges(
                 };
                 let found = &mut by_line[member.2];
                 let before = found.len();
-                found.extend(runs(bits, first, last).map(|[a, b]| {
-                    let (a, b) = (metres(a), metres(b));
+                found.extend(runs(bits, first..last, true).map(|run| {
+                    let (a, b) = (metres(run.start), metres(run.end));
                     (edge, [a.min(b), a.max(b)])
                 }));
                 if ends[0] > ends[1] {
@@ -122,30 +123,6 @@ pub fn cover_edges(
         offsets[edge] += offsets[edge - 1];
     }
     Covered { shares, runs: by_line.into_iter().flatten().map(|(_, run)| run).collect(), offsets }
-}
-
-/// Runs of set bits from bit `first` to before bit `last`.
-fn runs(bits: &[u64], first: usize, last: usize) -> impl Iterator<Item = [usize; 2]> {
-    let mut at = first;
-    std::iter::from_fn(move || {
-        let from = next(bits, at, last, true);
-        at = next(bits, from, last, false);
-        (from < at).then_some([from, at])
-    })
-}
-
-/// The next bit that is `set`, from bit `at` on, or `last`.
-fn next(bits: &[u64], at: usize, last: usize, set: bool) -> usize {
-    let mut at = at;
-    while at < last {
-        let word = bits.get(at / 64).copied().unwrap_or(0) ^ if set { 0 } else { u64::MAX };
-        let ahead = (word >> (at % 64)).trailing_zeros() as usize;
-        if ahead < 64 {
-            return (at + ahead).min(last);
-        }
-        at = (at / 64 + 1) * 64;
-    }
-    last
 }
 
 /// Set bits before each word.

@@ -32,8 +32,8 @@ fn radius(resolution: f64, parameters: &Parameters) -> usize {
     (radius.clamp(0.0, MAX_RADIUS as f64) as usize).clamp(MIN_RADIUS, MAX_RADIUS)
 }
 
-/// How far a pixel bears on gradients around it, pixels along either axis: on those of the edge pixels whose window holds
-/// it or a neighbour of it. The resolution is in metres per pixel.
+/// How far a pixel bears on gradients around it, pixels along either axis: on those of the edge pixels whose window
+/// holds it or a neighbour of it. The resolution is in metres per pixel.
 #[must_use]
 pub fn reach(resolution: f64, parameters: &Parameters) -> usize {
     radius(resolution, parameters) + 1
@@ -45,8 +45,8 @@ pub fn find_gradients(grid: &Grid, parameters: &Parameters, threads: usize) -> G
     find_gradients_in(grid, 0..grid.frame.height, 0..grid.frame.width, parameters, threads)
 }
 
-/// The gradients of some rows and columns, as [`find_gradients`] has them there. Of the grid the rows within [`reach`] of
-/// these need be at hand.
+/// The gradients of some rows and columns, as [`find_gradients`] has them there. Of the grid the rows within [`reach`]
+/// of these need be at hand.
 #[must_use]
 pub fn find_gradients_in(
     grid: &Grid,
@@ -124,8 +124,9 @@ fn edge_pixels(grid: &Grid, band: Range<usize>, among: &Range<usize>) -> Vec<Vec
     .collect()
 }
 
-/// Gradients of one row's edge pixels among some columns, from the scatter of the edge pixels within `radius`. The window is round: of a
-/// wall's two faces a square one would cut off unequal ends, and so turn them towards its own corners.
+/// Gradients of one row's edge pixels among some columns, from the scatter of the edge pixels within `radius`. The
+/// window is round: of a wall's two faces a square one would cut off unequal ends, and so turn them towards its own
+/// corners.
 fn row_gradients(edges: &Edges, y: usize, among: &Range<usize>, radius: usize, out: &mut Gradients) {
     let Edges { first, rows } = edges;
     let own = &rows[y - first];

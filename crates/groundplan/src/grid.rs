@@ -166,8 +166,8 @@ impl<'a> Grid<'a> {
         Self::part(pixels, bottom_up, table, frame, 0..frame.height)
     }
 
-    /// A grid of which only some rows are at hand, counted from the bottom: of the others nothing may be asked. The frame
-    /// is that of the whole map.
+    /// A grid of which only some rows are at hand, counted from the bottom: of the others nothing may be asked. The
+    /// frame is that of the whole map.
     ///
     /// # Panics
     /// When the number of pixels is not that of these rows: the caller's bug.

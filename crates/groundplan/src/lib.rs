@@ -27,6 +27,7 @@
 pub mod adjacency;
 pub mod arrangement;
 mod bands;
+mod bits;
 mod coverage;
 pub mod directions;
 pub mod gradients;
@@ -39,6 +40,7 @@ mod oriented;
 pub mod parameters;
 pub mod radiograms;
 pub mod route;
+mod sets;
 pub mod subdivision;
 pub mod sums;
 mod survey;

@@ -122,9 +122,9 @@ impl Locator {
         [x, y].map(|sum| (sum / around.len() as f64 * STEPS).round() as i64)
     }
 
-    /// The face that holds a point, metres in the map frame; none outside the map or for what is no number. The point is
-    /// rounded to 2^-26 of a pixel. One on a line belongs to the side of the line's normal, one on the map's border to
-    /// the map.
+    /// The face that holds a point, metres in the map frame; none outside the map or for what is no number. The point
+    /// is rounded to 2^-26 of a pixel. One on a line belongs to the side of the line's normal, one on the map's border
+    /// to the map.
     #[must_use]
     pub fn locate(&self, point: [f64; 2]) -> Option<u32> {
         let pixels = self.frame.to_pixels(point);

@@ -41,6 +41,7 @@ impl Occupancy {
 
 /// A face is occupied when its average occupancy exceeds this and it is not mostly unknown.
 const OCCUPIED: f64 = 0.5;
+
 /// Measures faces and edges, from what the pixels add to the faces and from the edge pixels.
 #[must_use]
 pub fn find_occupancy(

@@ -94,9 +94,9 @@ impl Oriented {
 }
 
 /// How sharp the projection of some pixels is: the sum of the squares of its smoothed bins. It is greatest where walls
-/// fall on single bins. The bins are finer than a pixel and smoothed over more than one, so that it does not matter where
-/// between the bins a wall falls: else an angle slightly off, at which the walls happen to fall upon bins, would look
-/// sharper than the right one.
+/// fall on single bins. The bins are finer than a pixel and smoothed over more than one, so that it does not matter
+/// where between the bins a wall falls: else an angle slightly off, at which the walls happen to fall upon bins, would
+/// look sharper than the right one.
 pub(crate) struct Sharpness {
     xs: Vec<f32>,
     ys: Vec<f32>,
@@ -129,7 +129,8 @@ impl Sharpness {
         }
     }
 
-    /// Smoothed over `WIDTH` bins, 3 or 7: half as many bins, rounded up, to the pixel, so that pixels in a row fall on bins.
+    /// Smoothed over `WIDTH` bins, 3 or 7: half as many bins, rounded up, to the pixel, so that pixels in a row fall on
+    /// bins.
     pub fn at<const WIDTH: usize>(&mut self, angle: f64) -> f64 {
         let scale = WIDTH.div_ceil(2) as f64;
         let (nx, ny) = (-libm::sin(angle) * scale, libm::cos(angle) * scale);

@@ -29,8 +29,8 @@ const BITS: u32 = 20;
 /// Fixed-point bits of the place between two bins.
 const FRACTION_BITS: u32 = 4;
 
-/// Sums of pixels' weights over offset across `angle` (on the grid), split between the two nearest bins, and the offset of
-/// the first bin in pixels.
+/// Sums of pixels' weights over offset across `angle` (on the grid), split between the two nearest bins, and the offset
+/// of the first bin in pixels.
 pub(crate) fn project(frame: &Frame, angle: f64, pixels: impl Iterator<Item = ([u32; 2], i64)>) -> (i64, Vec<i64>) {
     let [nx, ny] = normal(angle);
     let (width, height) = (frame.width as i64, frame.height as i64);

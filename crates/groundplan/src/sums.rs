@@ -1,4 +1,5 @@
-//! II-D: what the pixels of the map, or of some of its rows, add to each face, by sums over rows between line crossings.
+//! II-D: what the pixels of the map, or of some of its rows, add to each face, by sums over rows between line
+//! crossings.
 
 use crate::arrangement::{Arrangement, NONE};
 use crate::bands::fold_bands;

@@ -18,7 +18,8 @@ pub enum WallKind {
     Freestanding,
 }
 
-/// A piece of wall: what lies on cogent edges of one kind, joined along their line, from where it begins to where it ends.
+/// A piece of wall: what lies on cogent edges of one kind, joined along their line, from where it begins to where it
+/// ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall {
     /// Its ends, metres in the map frame.

@@ -22,18 +22,23 @@ const GETS_THROUGH: f64 = 0.35;
 pub fn across(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
     let (low, high) = (across[0] + MARGIN, across[1] - MARGIN);
     let is_door = |barred: f64| barred > BARRED && (1.0 - barred) * (high - low) <= DOOR;
-    thin(view, view.all_barred(range, low, high).into_iter().map(is_door).collect())
+    thin(view, view.some_barred(range, low, high).into_iter().map(is_door).collect())
 }
 
 /// The columns in which such a wall stands on both sides of a strip, which leads through a door in it.
 pub fn doors(view: &Turned, sides: [[f64; 2]; 2], range: Range<usize>) -> Vec<bool> {
-    let [one, two] = sides.map(|[low, high]| view.all_barred(range.clone(), low, high));
+    let [one, two] = sides.map(|[low, high]| view.some_barred(range.clone(), low, high));
     thin(view, one.into_iter().zip(two).map(|(one, two)| one.min(two) > BESIDE).collect())
+}
+
+/// Columns of the thickest wall.
+fn thickest(view: &Turned) -> usize {
+    (THICK / view.cell).ceil() as usize
 }
 
 /// Flags without runs that are thicker than a wall.
 fn thin(view: &Turned, mut flags: Vec<bool>) -> Vec<bool> {
-    let longest = (THICK / view.cell).ceil() as usize;
+    let longest = thickest(view);
     for (from, to) in runs(&flags, true) {
         if to - from > longest {
             flags[from..to].fill(false);
@@ -42,17 +47,17 @@ fn thin(view: &Turned, mut flags: Vec<bool>) -> Vec<bool> {
     flags
 }
 
-/// The same of some columns, as they are among all.
+/// [`across`] of some columns, as they are among all.
 pub fn among(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
     // What is thicker beyond the range is no wall within it.
-    let more = (THICK / view.cell).ceil() as usize + 1;
+    let more = thickest(view) + 1;
     let wider = range.start.saturating_sub(more)..(range.end + more).min(view.size[0]);
     let first = range.start - wider.start;
     self::across(view, across, wider)[first..first + range.len()].to_vec()
 }
 
-/// Where a square of a share of the strip's width, which never turns back, gets no further along it: a wall askew to the
-/// strip bars no column for itself. Beyond each such column it begins anew.
+/// Where a square of a share of the strip's width, which never turns back, gets no further along it: a wall askew to
+/// the strip bars no column for itself. Beyond each such column it begins anew.
 pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize> {
     let count = ((across[1] - across[0]) / view.cell).round().max(1.0) as usize;
     let side = ((GETS_THROUGH * count as f64) as usize).max(1);
@@ -64,7 +69,7 @@ pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize>
     let mut found = Vec::new();
     let place = |n: usize| first + n as f64 * view.cell;
     let barred: Vec<Vec<f64>> =
-        (0..count).map(|n| view.all_barred(range.clone(), place(n), place(n) + view.cell)).collect();
+        (0..count).map(|n| view.some_barred(range.clone(), place(n), place(n) + view.cell)).collect();
     let from = range.start;
     for c in range {
         for (columns, barred) in free_for.iter_mut().zip(&barred) {

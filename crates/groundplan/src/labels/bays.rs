@@ -88,7 +88,8 @@ fn common(rows: &[Vec<f64>], threads: usize) -> Option<f64> {
     near.map(|f| (power(f), 1.0 / f)).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, pitch)| pitch)
 }
 
-/// A row's own pitch near the common one. Posts are narrow: their harmonics tell it more finely than they do themselves.
+/// A row's own pitch near the common one. Posts are narrow: their harmonics tell it more finely than they do
+/// themselves.
 fn of_row(places: &[f64], common: f64, length: f64) -> Option<Period> {
     let power = |pitch: f64| {
         let harmonics = (1..=HARMONICS).map(|h| period::measure(places, pitch / f64::from(h)).strength.powi(2));

@@ -1,6 +1,6 @@
-//! How sure a label is: what the pixels around it say of the question that it answers, from 0 (nothing speaks for it) to
-//! 1 (nothing against it). Each kind has its own question; the map itself is asked, not the steps that led to the label,
-//! so that two ways to find a label are held to one measure.
+//! How sure a label is: what the pixels around it say of the question that it answers, from 0 (nothing speaks for it)
+//! to 1 (nothing against it). Each kind has its own question; the map itself is asked, not the steps that led to the
+//! label, so that two ways to find a label are held to one measure.
 
 use super::{Evidence, JunctionKind, Label};
 use crate::bands::map_each;

@@ -82,7 +82,7 @@ const FACED: f64 = 0.7;
 const FACED_TWICE: f64 = 0.4;
 const FACED_ONCE: f64 = 0.85;
 /// A strip from so many to so many pitches wide may be a row of bays.
-const BAY_WIDTH: (f64, f64) = (0.65, 1.17);
+pub const BAY_WIDTH: (f64, f64) = (0.65, 1.17);
 /// It is none when walls run along both its sides, with hardly a gap.
 const WALLED: f64 = 0.8;
 /// Nor when it is long, nearly all of it has structure on a side, and so much has it on the weaker one.
@@ -98,7 +98,8 @@ const RIVAL: f64 = 0.25;
 /// Strips whose directions differ by an angle of a smaller sine run nearly the same way.
 const ASKEW: f64 = 0.5;
 
-/// Corridors along every direction, in the order of the directions and their places.
+/// Corridors along every direction, in the order of the directions: of each those between lines by their places, and
+/// then the ragged ones, the best first.
 pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
     // Each view shares its own work out among what threads are left.
     let threads = evidence.threads.div_ceil(views.len().max(1));
@@ -166,7 +167,6 @@ struct Family<'a> {
     /// True when racks stand in the place: somewhere bays recur.
     racked: bool,
     parameters: &'a Parameters,
-    offsets: Vec<f64>,
     sides: Vec<Side>,
 }
 
@@ -186,8 +186,7 @@ impl<'a> Family<'a> {
             racked,
             view,
             parameters: evidence.parameters,
-            offsets: view.offsets.clone(),
-            sides: (0..view.lines.len()).map(|n| Side::new(view, n, bay, racked)).collect(),
+            sides: (0..view.offsets.len()).map(|n| Side::new(view, n, bay, racked)).collect(),
         }
     }
 
@@ -195,8 +194,8 @@ impl<'a> Family<'a> {
     fn candidates(&self, threads: usize) -> Vec<Candidate> {
         let above = |low: usize| {
             let mut found = Vec::new();
-            for high in low + 1..self.offsets.len() {
-                let across = [self.offsets[low], self.offsets[high]];
+            for high in low + 1..self.view.offsets.len() {
+                let across = [self.view.offsets[low], self.view.offsets[high]];
                 let width = across[1] - across[0];
                 if width > self.parameters.labels_max_width {
                     break;
@@ -209,16 +208,16 @@ impl<'a> Family<'a> {
             }
             found
         };
-        map_each(self.offsets.len(), threads, above).into_iter().flatten().collect()
+        map_each(self.view.offsets.len(), threads, above).into_iter().flatten().collect()
     }
 
     /// What some columns between two lines hold.
     fn columns(&self, [low, high]: [usize; 2], range: std::ops::Range<usize>) -> Vec<Column> {
-        let across = [self.offsets[low], self.offsets[high]];
+        let across = [self.view.offsets[low], self.view.offsets[high]];
         let width = across[1] - across[0];
         let inner = INNER.min(0.25 * width);
         let parts: Vec<&Side> = (low + 1..high)
-            .filter(|&n| self.offsets[n] - across[0] > inner && across[1] - self.offsets[n] > inner)
+            .filter(|&n| self.view.offsets[n] - across[0] > inner && across[1] - self.view.offsets[n] > inner)
             .map(|n| &self.sides[n])
             .collect();
         let sides = [&self.sides[low], &self.sides[high]];
@@ -275,7 +274,7 @@ impl<'a> Family<'a> {
         let (below, above) = if one.middle() < two.middle() { (one, two) } else { (two, one) };
         let border = [below.across[1], above.across[0]];
         let (low, high) = (border[0].min(border[1]) - 1e-6, border[0].max(border[1]) + 1e-6);
-        let between = self.offsets.iter().zip(&self.sides).filter(|(o, _)| (low..=high).contains(*o));
+        let between = self.view.offsets.iter().zip(&self.sides).filter(|(o, _)| (low..=high).contains(*o));
         let lines: Vec<&Side> = between.map(|(_, side)| side).collect();
         let (p, q) = (self.range(one), self.range(two));
         let (from, to) = (p.0.max(q.0), p.1.min(q.1));
@@ -283,8 +282,8 @@ impl<'a> Family<'a> {
         from < to && structure as f64 >= DENSE * (to - from) as f64
     }
 
-    /// The corridors among a strip's columns, of which the first is given: the pieces in which what speaks for a corridor outweighs what speaks
-    /// against it, each as long as that holds.
+    /// The corridors among a strip's columns, of which the first is given: the pieces in which what speaks for a
+    /// corridor outweighs what speaks against it, each as long as that holds.
     fn strips(&self, columns: &[Column], first: usize, across: [f64; 2]) -> Vec<Strip> {
         let scores: Vec<f64> = columns.iter().map(|c| c.score()).collect();
         let pieces = best_pieces(&scores).into_iter();

@@ -1,5 +1,5 @@
-//! Ways through rows of racks: gates, which are too short to be known by walls of their own, and which of the strips that
-//! lead across rows do so through their bays.
+//! Ways through rows of racks: gates, which are too short to be known by walls of their own, and which of the strips
+//! that lead across rows do so through their bays.
 
 use super::Evidence;
 use super::corridors::Strip;
@@ -80,11 +80,10 @@ fn cross(
     strip: &Strip,
     between: [&Strip; 2],
 ) -> Option<Crossed> {
-    let (sin, cos) = (libm::sin(other.angle - view.angle), libm::cos(other.angle - view.angle));
+    let sin = libm::sin(other.angle - view.angle);
     let middle = f64::midpoint(row.across[0], row.across[1]);
     // The strip's middle where the row's is, and places of the row's direction along the strip.
-    let s = (middle - strip.middle() * cos) / sin;
-    let u = s * cos - strip.middle() * sin;
+    let [s, u] = view.crossing(other, middle, strip.middle());
     let along = |v: f64| s + (v - middle) / sin;
     let sorted = |ends: [f64; 2]| [ends[0].min(ends[1]), ends[0].max(ends[1])];
     let own = sorted(row.across.map(along));

@@ -26,6 +26,8 @@ pub struct Meeting {
 /// A corridor goes on beyond a junction when it does so for this long, metres, and where a wall ends it, for this share
 /// of its width: less is what is left of it at a corner.
 const ARM: (f64, f64) = (1.6, 0.65);
+/// What stands within this share of its width of a corridor's sides does not close it.
+const MARGIN: f64 = 0.2;
 /// A corridor that ends this far short of another still meets it, metres, when the way between is free.
 const SHORT: f64 = 6.0;
 /// Corridors whose directions have an angle of a smaller sine do not meet.
@@ -117,8 +119,7 @@ fn kind(ways: &[f64]) -> Option<JunctionKind> {
 
 /// True when a corridor goes on beyond a junction by so much that it leads on.
 pub fn goes_on(view: &Turned, strip: &Strip, side: usize, beyond: f64) -> bool {
-    let sign = if side == 0 { -1.0 } else { 1.0 };
-    beyond >= ARM.0 && (beyond >= ARM.1 * strip.width() || closed(view, strip, side, sign, LOOK).is_none())
+    beyond >= ARM.0 && (beyond >= ARM.1 * strip.width() || closed(view, strip, side, LOOK).is_none())
 }
 
 fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting> {
@@ -133,7 +134,6 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
     }
     let (m1, m2) = (one.middle(), two.middle());
     let at = [(m1 * c2 - m2 * c1) / sine, (m1 * s2 - m2 * s1) / sine];
-    let at = [at[0], at[1]];
     let mut ways = Vec::new();
     let mut reach = [0.0; 2];
     for (n, (strip, other, view)) in [(one, two, first), (two, one, second)].into_iter().enumerate() {
@@ -151,12 +151,11 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
         } else {
             (u, u)
         };
-        let margin = 0.2 * strip.width();
-        let closed = |c| view.is_closed(c, strip.across[0] + margin, strip.across[1] - margin);
-        if (view.column(from)..=view.column(to)).any(closed) {
+        let columns = view.column(from)..view.column(to) + 1;
+        let [low, high] = inner(strip);
+        if view.some_closed(columns.clone(), low, high).contains(&true) {
             return None;
         }
-        let columns = view.column(from)..view.column(to) + 1;
         let has_door = barriers::across(view, strip.across, columns.clone()).contains(&true);
         if has_door || !barriers::stops(view, strip.across, columns).is_empty() {
             return None;
@@ -186,15 +185,15 @@ pub fn ends(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<(us
     let of_each = of_each(meetings, strips.len());
     for (n, strip) in strips.iter().enumerate() {
         let view = &views[strip.direction];
-        for (side, sign) in [(0, -1.0), (1, 1.0)] {
+        for side in [0, 1] {
             let met = of_each[n].iter().map(|&m| &meetings[m]).any(|meeting| {
                 let place = meeting.corridors.iter().position(|c| *c == n);
                 place.is_some_and(|p| {
                     let u = view.place(meeting.at)[0];
-                    !goes_on(view, strip, side, (strip.along[side] - u) * sign - meeting.reach[p.min(1)])
+                    !goes_on(view, strip, side, (strip.along[side] - u) * sign(side) - meeting.reach[p.min(1)])
                 })
             });
-            if !met && let Some(place) = closed(view, strip, side, sign, LOOK) {
+            if !met && let Some(place) = closed(view, strip, side, LOOK) {
                 found.push((n, side, place));
             }
         }
@@ -207,19 +206,28 @@ pub fn is_shut(views: &[Turned], strip: &Strip, side: usize) -> bool {
     let view = &views[strip.direction];
     let end = strip.along[side];
     let [from, to] = [end - SHUT, end + SHUT].map(|u| view.column(u));
-    let sign = if side == 0 { -1.0 } else { 1.0 };
-    closed(view, strip, side, sign, SHUT).is_some()
-        || barriers::across(view, strip.across, from..to + 1).contains(&true)
+    closed(view, strip, side, SHUT).is_some() || barriers::across(view, strip.across, from..to + 1).contains(&true)
+}
+
+/// A strip without what stands at its sides, across.
+fn inner(strip: &Strip) -> [f64; 2] {
+    let margin = MARGIN * strip.width();
+    [strip.across[0] + margin, strip.across[1] - margin]
+}
+
+/// Which way along a strip one of its ends lies.
+fn sign(side: usize) -> f64 {
+    if side == 0 { -1.0 } else { 1.0 }
 }
 
 /// Where what closes a strip so far beyond one of its ends begins.
-fn closed(view: &Turned, strip: &Strip, side: usize, sign: f64, look: f64) -> Option<f64> {
+fn closed(view: &Turned, strip: &Strip, side: usize, look: f64) -> Option<f64> {
+    let sign = sign(side);
     let cells = |metres: f64| (metres / view.cell).ceil() as i64;
     let last = view.size[0] as i64 - 1;
     let start = view.column(strip.along[side] - 0.5 * sign * view.cell) as i64;
     let columns = (0..=cells(look)).map(|step| start + step * sign as i64).filter(|c| (0..=last).contains(c));
-    let margin = 0.2 * strip.width();
-    let (low, high) = (strip.across[0] + margin, strip.across[1] - margin);
+    let [low, high] = inner(strip);
     let first = columns.into_iter().find(|&c| view.is_closed(c as usize, low, high))?;
     // A wall that is not quite square to the corridor shows in several columns.
     let deep = (-cells(DEEP)..=cells(DEEP)).map(|step| first + step).filter(|c| (0..=last).contains(c));

@@ -1,9 +1,10 @@
-//! Pillars: what is small, stands by itself in free space, and recurs as what carries a roof does and as what was left on
-//! the floor does not.
+//! Pillars: what is small, stands by itself in free space, and recurs as what carries a roof does and as what was left
+//! on the floor does not.
 //!
 //! Two blobs in line, or three at a right angle, propose a row or a grid whose pitch divides their distances. How many
-//! others it meets is held against how many it would meet if all lay anyhow: the proposal least to be had by chance is a
-//! pattern when fewer than one in a hundred such would be expected of all that were tried (Desolneux, Moisan and Morel 2000).
+//! others it meets is held against how many it would meet if all lay anyhow: the proposal least to be had by chance is
+//! a pattern when fewer than one in a hundred such would be expected of all that were tried (Desolneux, Moisan and
+//! Morel 2000).
 
 use super::Evidence;
 use super::near::Near;

@@ -3,7 +3,6 @@
 //! A row is known by its two faces, be it half empty: it lies between neighbouring corridors of one direction, is cut
 //! where other corridors cross, and holds something.
 
-use super::Evidence;
 use super::corridors::Strip;
 use super::near::Near;
 use super::turned::Turned;
@@ -38,9 +37,9 @@ const PLACE: (usize, f64) = (3, 0.22);
 pub const SAME: f64 = 0.3;
 
 /// The rows between the corridors and at the outer sides of them, the longest first.
-pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
+pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
     let crossings = Crossings::new(views, strips, extents);
-    let mut rows = between(views, strips, extents);
+    let mut rows = crossings.between();
     rows.retain(|row| taken(&views[row.direction], row) >= TAKEN);
     for (n, strip) in strips.iter().enumerate() {
         let view = &views[strip.direction];
@@ -52,8 +51,8 @@ pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[
             }
             let own = strip.across[side];
             // Where no corridor runs along its other side, a row's other face must have been seen.
-            let mut faces: Vec<(f64, usize)> = (0..view.lines.len())
-                .map(|n| (evidence.lines.offsets[view.lines[n]] - own, n))
+            let mut faces: Vec<(f64, usize)> = (0..view.offsets.len())
+                .map(|n| (view.offsets[n] - own, n))
                 .map(|(offset, n)| (if side == 1 { offset } else { -offset }, n))
                 .filter(|(depth, _)| (DEPTH.0..=DEPTH.1).contains(depth))
                 .collect();
@@ -76,27 +75,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], strips: &[Strip], extents: &[
 
 /// What lies between neighbouring corridors, and may be a row, be it taken or not.
 pub fn between(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
-    let crossings = Crossings::new(views, strips, extents);
-    let mut rows = Vec::new();
-    for (n, strip) in strips.iter().enumerate() {
-        let mut open = vec![(extents[n][0], extents[n][1])];
-        for (m, depth) in behind(strips, n, 1) {
-            let [from, to] = extents[m];
-            let shared = open.iter().map(|(a, b)| (a.max(from), b.min(to))).filter(|(a, b)| a < b).collect();
-            open = without(open, from, to);
-            if depth >= DEPTH.0 {
-                let across = [strip.across[1], strips[m].across[0]];
-                let pieces = crossings.uncrossed(n, across, shared).into_iter();
-                rows.extend(pieces.map(|along| Row {
-                    direction: strip.direction,
-                    along,
-                    across,
-                    between: Some([n, m]),
-                }));
-            }
-        }
-    }
-    rows
+    Crossings::new(views, strips, extents).between()
 }
 
 /// The corridors of its direction on one side of a corridor, no further off than a row is deep, the nearest first; each
@@ -132,6 +111,31 @@ impl<'a> Crossings<'a> {
         let sine = sines.filter(|sine| *sine > 0.0).fold(1.0, f64::min);
         let widest = strips.iter().map(Strip::width).fold(0.0, f64::max);
         Self { views, strips, extents, near: Near::polygons(&polygons), reach: widest / sine }
+    }
+
+    /// What lies between neighbouring corridors.
+    fn between(&self) -> Vec<Row> {
+        let Self { strips, extents, .. } = *self;
+        let mut rows = Vec::new();
+        for (n, strip) in strips.iter().enumerate() {
+            let mut open = vec![(extents[n][0], extents[n][1])];
+            for (m, depth) in behind(strips, n, 1) {
+                let [from, to] = extents[m];
+                let shared = open.iter().map(|(a, b)| (a.max(from), b.min(to))).filter(|(a, b)| a < b).collect();
+                open = without(open, from, to);
+                if depth >= DEPTH.0 {
+                    let across = [strip.across[1], strips[m].across[0]];
+                    let pieces = self.uncrossed(n, across, shared).into_iter();
+                    rows.extend(pieces.map(|along| Row {
+                        direction: strip.direction,
+                        along,
+                        across,
+                        between: Some([n, m]),
+                    }));
+                }
+            }
+        }
+        rows
     }
 
     /// Pieces of a row beside a corridor that no other corridor crosses, each long enough.
@@ -219,16 +223,9 @@ fn without(pieces: Vec<(f64, f64)>, from: f64, to: f64) -> Vec<(f64, f64)> {
 /// ends before.
 fn crossed(view: &Turned, other: &Turned, crossing: &Strip, extent: [f64; 2], across: [f64; 2]) -> Option<[f64; 2]> {
     let middle = f64::midpoint(across[0], across[1]);
-    let turn = other.angle - view.angle;
-    let (sin, cos) = (libm::sin(turn), libm::cos(turn));
-    // A point at (s, t) of the other direction lies at u = s cos - t sin, v = s sin + t cos.
-    let place = |t: f64| {
-        let s = (middle - t * cos) / sin;
-        (s, s * cos - t * sin)
-    };
-    let ends = crossing.across.map(place);
-    let within = ends.iter().any(|(s, _)| (extent[0]..=extent[1]).contains(s));
-    within.then(|| [ends[0].1.min(ends[1].1), ends[0].1.max(ends[1].1)])
+    let ends = crossing.across.map(|t| view.crossing(other, middle, t));
+    let within = ends.iter().any(|[s, _]| (extent[0]..=extent[1]).contains(s));
+    within.then(|| [ends[0][1].min(ends[1][1]), ends[0][1].max(ends[1][1])])
 }
 
 /// Share of a row that is not free.

@@ -6,7 +6,7 @@
 
 use super::barriers;
 use super::corridors::{self, Strip, best_pieces, close};
-use super::turned::{Shares, Turned};
+use super::turned::{IMPASSABLE, Shares, Turned};
 use crate::bands::map_each;
 use crate::parameters::Parameters;
 use std::ops::Range;
@@ -32,8 +32,8 @@ const GAP: f64 = 1.4;
 /// A way is at least so long, metres, and so many times as long as wide: less is a room. The same with thin sides.
 const LONG: (f64, f64) = (7.0, 4.2);
 const VERY_LONG: (f64, f64) = (10.0, 5.0);
-/// Least shares of its columns that are clear (and that are where the sides are thin), that hold on each side and on both, and on which something seen stands
-/// there.
+/// Least shares of its columns that are clear (and that are where the sides are thin), that hold on each side and on
+/// both, and on which something seen stands there.
 const LEAST_CLEAR: f64 = 0.75;
 const LEAST_CLEAR_THIN: f64 = 0.95;
 const LEAST_HELD: f64 = 0.5;
@@ -43,7 +43,7 @@ const LEAST_SEEN: f64 = 0.3;
 const LEAST_FACED: f64 = 0.2;
 /// Up to so many pitches of the rows that it crosses it may lie over empty bays, from row to row: so much holds on both
 /// sides then.
-const BAY: f64 = 1.17;
+const BAY: f64 = corridors::BAY_WIDTH.1;
 const LEAST_BOTH_BAY: f64 = 0.8;
 /// A way that shares more than this of its width with a known one is none.
 const SHARED: f64 = 0.25;
@@ -54,8 +54,6 @@ const NARROWED: i64 = 2;
 const ONE_SIDED: i64 = 1;
 const OPEN: i64 = 7;
 const BLOCKED: i64 = 20;
-/// No way goes on through what closes it: a column of which so much is not free.
-const IMPASSABLE: f64 = 0.7;
 
 /// What holds a side.
 #[derive(Clone, Copy, PartialEq)]

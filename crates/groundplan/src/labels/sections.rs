@@ -6,7 +6,7 @@
 use super::corridors::runs;
 use super::look::{BLOCKED, Look};
 use super::racks::Row;
-use super::turned::Turned;
+use super::turned::{Shares, Turned};
 use crate::grid::Frame;
 
 /// A way is so wide, metres.
@@ -70,15 +70,17 @@ impl<'a> Columns<'a> {
         let mut made = Self { look, frame, view, row, middle, lean, pitch, blocked: Vec::new(), faces: Vec::new() };
         let slices = (((row.across[1] - row.across[0]) / view.cell).round() as usize).max(1);
         let height = (row.across[1] - row.across[0]) / slices as f64;
+        let slices: Vec<_> = (0..slices)
+            .map(|k| row.across[0] + k as f64 * height)
+            .map(|low| (low + height / 2.0, view.blocked_in(low, low + height)))
+            .collect();
+        let faces = row.across.map(|v| (v, view.occupied_in(v - FACE, v + FACE)));
         for n in 0..count {
             let along = made.place(n) + view.cell / 2.0;
             let column = |v: f64| view.column(along + (v - middle) * lean);
-            let share = |k: usize| {
-                let low = row.across[0] + k as f64 * height;
-                view.blocked(column(low + height / 2.0), low, low + height)
-            };
-            made.blocked.push((0..slices).map(share).sum::<f64>() / slices as f64);
-            made.faces.push(row.across.map(|v| view.occupied(column(v), v - FACE, v + FACE) > 0.0));
+            let share = |(v, of): &(f64, Shares)| of.share(of.at(column(*v)));
+            made.blocked.push(slices.iter().map(share).sum::<f64>() / slices.len() as f64);
+            made.faces.push([0, 1].map(|face| share(&faces[face]) > 0.0));
         }
         made
     }
@@ -95,8 +97,8 @@ impl<'a> Columns<'a> {
             .collect()
     }
 
-    /// True when what is known to be a way elsewhere goes on through the row: it is wider than a bay, and nothing stands
-    /// between its sides that one could not walk round.
+    /// True when what is known to be a way elsewhere goes on through the row: it is wider than a bay, and nothing
+    /// stands between its sides that one could not walk round.
     pub fn lets_through(&self, sides: [f64; 2]) -> bool {
         let (first, last) = self.inner(sides);
         first < last
@@ -105,7 +107,8 @@ impl<'a> Columns<'a> {
             && !(first..last).any(|n| self.stops(n))
     }
 
-    /// True when the row may end at a way that passes by: that is hardly narrower than a bay, and no upright stands in it.
+    /// True when the row may end at a way that passes by: that is hardly narrower than a bay, and no upright stands in
+    /// it.
     pub fn may_end_at(&self, sides: [f64; 2]) -> bool {
         let (first, last) = self.inner(sides);
         self.pitch.is_none_or(|pitch| sides[1] - sides[0] > NARROW * pitch) && !(first..last).any(|n| self.stops(n))

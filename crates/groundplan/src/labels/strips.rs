@@ -36,11 +36,11 @@ pub fn find(evidence: &Evidence, ground: &Ground) -> Vec<Label> {
         let own = Evidence { threads: evidence.threads / count.max(1), ..*evidence };
         let views = map_each(count, evidence.threads, |d| Turned::new(&own, &ground.look, d));
         let found = gates::without_bays(evidence, &ground.look, &views, corridors::find(evidence, &views));
-        let mut plan = Plan::new(evidence, &views, found);
+        let mut plan = Plan::new(&views, found);
         let gates = gates::find(evidence, &ground.look, &views, &plan.strips, &plan.rows);
         if !gates.is_empty() {
             plan.strips.extend(gates);
-            plan = Plan::new(evidence, &views, plan.strips);
+            plan = Plan::new(&views, plan.strips);
         }
         (views, plan)
     });
@@ -140,7 +140,7 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(evidence: &Evidence, views: &[Turned], strips: Vec<Strip>) -> Self {
+    fn new(views: &[Turned], strips: Vec<Strip>) -> Self {
         let (mut strips, meetings) = connected(views, strips);
         // A corridor goes on to what it meets, and there it may be what another one meets.
         let longer = extents(views, &strips, &meetings);
@@ -153,7 +153,7 @@ impl Plan {
         for &(n, side, place) in &ends {
             extents[n][side] = place;
         }
-        let rows = racks::find(evidence, views, &strips, &extents);
+        let rows = racks::find(views, &strips, &extents);
         Self { strips, meetings, ends, extents, rows }
     }
 }
@@ -245,8 +245,8 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
     }
 }
 
-/// Where each corridor begins and ends, along: its walled part, and the middle of the junction at each end that it has no
-/// arm beyond.
+/// Where each corridor begins and ends, along: its walled part, and the middle of the junction at each end that it has
+/// no arm beyond.
 fn extents(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<[f64; 2]> {
     let mut extents: Vec<[f64; 2]> = strips.iter().map(|strip| strip.along).collect();
     let all = || {

@@ -1,4 +1,5 @@
-//! The cells of a view as sums: of how many samples, or cells, of a column something is true between any two places across.
+//! The cells of a view as sums: of how many samples, or cells, of a column something is true between any two places
+//! across.
 //!
 //! A view of few cells keeps its sums from the first row on. One of many keeps squares of cells, and those that are all
 //! alike as one number: most of a large map is.
@@ -44,8 +45,8 @@ pub struct Band {
     squares: Vec<Square>,
 }
 
-/// Rows of cells, a byte for each column with its blocked samples in the low half and its occupied ones in the high half; and
-/// a byte for each row with a bit for each column that is barred.
+/// Rows of cells, a byte for each column with its blocked samples in the low half and its occupied ones in the high
+/// half; and a byte for each row with a bit for each column that is barred.
 struct Square {
     cells: [u64; SIDE],
     barred: [u8; SIDE],

@@ -17,7 +17,7 @@ const NEAR: (f64, f64) = (0.12, 2.0);
 const STRONG: (f64, f64) = (2.0, 0.08);
 
 /// Nothing gets through where more than this share is not free, or more than this is barred by a wall, be it thin.
-const IMPASSABLE: f64 = 0.7;
+pub const IMPASSABLE: f64 = 0.7;
 const BARRED: f64 = 0.7;
 
 /// One direction's view of the map. Places along it (u) and across it (v) are metres in the map frame turned by the
@@ -40,9 +40,7 @@ pub struct Turned {
     samples: u32,
     /// Distance from post to post along its lines, metres, where posts recur.
     pub pitch: Option<f64>,
-    /// Lines of the direction: their ids, ascending in offset.
-    pub lines: Vec<usize>,
-    /// Their offsets.
+    /// Offsets of the direction's lines, ascending.
     pub offsets: Vec<f64>,
     /// For each of those lines, whether structure lies on it in each column.
     pub covered: Vec<Vec<bool>>,
@@ -76,7 +74,6 @@ impl Turned {
             cells: Cells::default(),
             samples,
             pitch: None,
-            lines: Vec::new(),
             offsets: Vec::new(),
             covered: Vec::new(),
             touched: Vec::new(),
@@ -114,12 +111,12 @@ impl Turned {
         let frame = &evidence.grid.frame;
         let lines = evidence.lines;
         let strong = STRONG.0.min(STRONG.1 * lines.typical_amplitude());
-        self.lines = (0..lines.len())
+        self.offsets = (0..lines.len())
             .filter(|&n| lines.directions[n] as usize == self.direction && lines.amplitudes[n] >= strong)
+            .map(|n| lines.offsets[n])
             .collect();
-        self.lines.sort_by(|&a, &b| lines.offsets[a].total_cmp(&lines.offsets[b]));
-        self.offsets = self.lines.iter().map(|&n| lines.offsets[n]).collect();
-        self.covered = vec![vec![false; self.size[0]]; self.lines.len()];
+        self.offsets.sort_by(f64::total_cmp);
+        self.covered = vec![vec![false; self.size[0]]; self.offsets.len()];
         self.touched = self.covered.clone();
         let near = NEAR.0.max(NEAR.1 * frame.resolution);
         let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
@@ -129,13 +126,13 @@ impl Turned {
             let lies = weight(f64::from(along), magnitude, on_grid, tolerance) > 0;
             let [u, v] = self.place(frame.to_metres(pixel.map(|p| f64::from(p) + 0.5)));
             let column = self.column(u);
-            let first = self.lines.partition_point(|&n| lines.offsets[n] < v - near);
-            for (place, &n) in self.lines.iter().enumerate().skip(first) {
-                if lines.offsets[n] > v + near {
+            let first = self.offsets.partition_point(|&offset| offset < v - near);
+            for (line, &offset) in self.offsets.iter().enumerate().skip(first) {
+                if offset > v + near {
                     break;
                 }
-                self.touched[place][column] = true;
-                self.covered[place][column] |= lies;
+                self.touched[line][column] = true;
+                self.covered[line][column] |= lies;
             }
         }
     }
@@ -150,6 +147,16 @@ impl Turned {
     pub fn to_map(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let [cos, sin] = self.heading;
         [u * cos - v * sin, u * sin + v * cos]
+    }
+
+    /// Where what lies at `t` across of another direction crosses what lies at `v` across of this one: the place along
+    /// the other direction, and along this one.
+    pub fn crossing(&self, other: &Self, v: f64, t: f64) -> [f64; 2] {
+        let turn = other.angle - self.angle;
+        let (sin, cos) = (libm::sin(turn), libm::cos(turn));
+        // A point at (s, t) of the other direction lies at u = s cos - t sin, v = s sin + t cos.
+        let s = (v - t * cos) / sin;
+        [s, s * cos - t * sin]
     }
 
     /// A rectangle of places, counter-clockwise, as a polygon in the map frame.
@@ -173,7 +180,7 @@ impl Turned {
     }
 
     /// Share of the way across a column that is barred: something stands in it, or in the columns beside it.
-    pub fn barred(&self, column: usize, low: f64, high: f64) -> f64 {
+    fn barred(&self, column: usize, low: f64, high: f64) -> f64 {
         self.share(What::Barred, column, low, high)
     }
 
@@ -188,11 +195,8 @@ impl Turned {
     }
 
     fn share(&self, what: What, column: usize, low: f64, high: f64) -> f64 {
-        let (from, to) = self.cells(low, high);
-        if from == to {
-            return 1.0;
-        }
-        f64::from(self.cells.rows(what, from, to).at(column)) / f64::from((to - from) as u32 * self.counts(what))
+        let of = self.shares_in(what, low, high);
+        of.share(of.at(column))
     }
 
     /// How many of a cell's samples, or cells, are asked.
@@ -217,7 +221,7 @@ impl Turned {
 
     /// [`Turned::is_closed`] of a range of columns.
     pub fn some_closed(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<bool> {
-        let barred = self.all_barred(columns.clone(), low, high);
+        let barred = self.some_barred(columns.clone(), low, high);
         self.some_blocked(columns, low, high)
             .into_iter()
             .zip(barred)
@@ -226,7 +230,7 @@ impl Turned {
     }
 
     /// [`Turned::barred`] of a range of columns.
-    pub fn all_barred(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
+    pub fn some_barred(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
         self.shares(What::Barred, columns, low, high)
     }
 
@@ -246,12 +250,8 @@ impl Turned {
     }
 
     fn shares(&self, what: What, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
-        let (from, to) = self.cells(low, high);
-        if from == to {
-            return vec![1.0; columns.len()];
-        }
-        let count = f64::from((to - from) as u32 * self.counts(what));
-        self.cells.rows(what, from, to).over(columns).into_iter().map(|sum| f64::from(sum) / count).collect()
+        let of = self.shares_in(what, low, high);
+        of.over(columns).into_iter().map(|samples| of.share(samples)).collect()
     }
 
     /// The cells across between two places: from, to.
@@ -284,13 +284,17 @@ impl Shares<'_> {
         self.rows.over(columns)
     }
 
-    /// The least number of samples whose share is as much as is asked for. Where there is no sample the share is all.
+    /// What share so many samples are. Where there is no sample the share is all.
+    pub fn share(&self, samples: u32) -> f64 {
+        if self.count == 0 { 1.0 } else { f64::from(samples) / f64::from(self.count) }
+    }
+
+    /// The least number of samples whose share is as much as is asked for.
     pub fn least(&self, is_enough: impl Fn(f64) -> bool) -> u32 {
-        let share = |n: u32| if self.count == 0 { 1.0 } else { f64::from(n) / f64::from(self.count) };
         let (mut low, mut high) = (0, self.count + 1);
         while low < high {
             let middle = low.midpoint(high);
-            if is_enough(share(middle)) { high = middle } else { low = middle + 1 }
+            if is_enough(self.share(middle)) { high = middle } else { low = middle + 1 }
         }
         low
     }

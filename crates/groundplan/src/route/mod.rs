@@ -31,8 +31,8 @@ pub struct Evidence {
 const BORDER: usize = 1;
 
 impl Ways {
-    /// Over the free pixels of a map. Every point of a way is at least `clearance` metres from every occupied pixel, its
-    /// corners included, and within free pixels.
+    /// Over the free pixels of a map. Every point of a way is at least `clearance` metres from every occupied pixel,
+    /// its corners included, and within free pixels.
     #[must_use]
     pub fn of_map(grid: &Grid, clearance: f64) -> Self {
         let (width, height) = (grid.frame.width, grid.frame.height);
@@ -52,8 +52,8 @@ impl Ways {
         Self::new(grid.frame, free, occupied, clearance)
     }
 
-    /// Over what a survey knows of the free space. The clearance is kept from what it has as taken and from what it does
-    /// not have as free.
+    /// Over what a survey knows of the free space. The clearance is kept from what it has as taken and from what it
+    /// does not have as free.
     #[must_use]
     pub fn of_survey(frame: &Frame, evidence: &Evidence, clearance: f64) -> Self {
         let (width, height) = (frame.width, frame.height);

@@ -1,6 +1,8 @@
 //! The free space that keeps a clearance, a bit for each pixel; by rows and by columns, so that both can be searched 64
 //! pixels at a time.
 
+use crate::bits;
+use crate::sets::Sets;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Pixels as bits, row by row; within one blank pixel on all sides, so that every pixel has eight neighbours.
@@ -229,26 +231,12 @@ impl Layer {
     }
 
     fn find_pieces(&mut self) {
-        fn root(parent: &mut [u32], mut n: u32) -> u32 {
-            while parent[n as usize] != n {
-                parent[n as usize] = parent[parent[n as usize] as usize];
-                n = parent[n as usize];
-            }
-            n
-        }
-        let mut parent: Vec<u32> = Vec::new();
+        let mut sets = Sets::new(0);
         let mut below = 0..0;
         for y in 0..self.rows.height {
             let start = self.runs.len();
-            let row = self.rows.row(y);
-            let mut x = 0;
-            while let Some(from) = next(row, x, true) {
-                let to = next(row, from, false).unwrap_or(self.rows.stride * 64);
-                let n = self.runs.len() as u32;
-                self.runs.push((from as u32, to as u32, n));
-                parent.push(n);
-                x = to;
-            }
+            let row = bits::runs(self.rows.row(y), 0..self.rows.stride * 64, true);
+            self.runs.extend(row.map(|run| (run.start as u32, run.end as u32, sets.add())));
             let mut other = below.start;
             for n in start..self.runs.len() {
                 let (from, to, _) = self.runs[n];
@@ -257,8 +245,7 @@ impl Layer {
                 }
                 let mut touching = other;
                 while touching < below.end && self.runs[touching].0 < to {
-                    let (a, b) = (root(&mut parent, n as u32), root(&mut parent, touching as u32));
-                    parent[a.max(b) as usize] = a.min(b);
+                    sets.join_first(n as u32, touching as u32);
                     touching += 1;
                 }
             }
@@ -266,7 +253,7 @@ impl Layer {
             self.row_runs.push(self.runs.len() as u32);
         }
         for n in 0..self.runs.len() {
-            self.runs[n].2 = root(&mut parent, n as u32);
+            self.runs[n].2 = sets.of(n as u32);
         }
     }
 
@@ -302,16 +289,4 @@ impl Layer {
         }
         best.map(|held| held.1)
     }
-}
-
-/// The first set (or blank) bit of a row from `from` on.
-fn next(row: &[u64], from: usize, set: bool) -> Option<usize> {
-    let flip = if set { 0 } else { u64::MAX };
-    let mut n = from / 64;
-    let mut word = (row.get(n)? ^ flip) & u64::MAX << (from % 64);
-    while word == 0 {
-        n += 1;
-        word = row.get(n)? ^ flip;
-    }
-    Some(n * 64 + word.trailing_zeros() as usize)
 }

@@ -1,11 +1,12 @@
 //! The free space cut along all bars, and the pieces joined again where the way between them is no narrower than they
 //! are: what stays apart are regions, and what parts them are their openings.
 
-use super::bits::{WORD, lowest};
 use super::fill::fill;
 use super::gaps::Bar;
 use super::raster::Raster;
-use super::runs::{Run, Runs, Sets, runs_of};
+use super::runs::{Run, Runs, runs_of};
+use crate::bits::{WORD, lowest};
+use crate::sets::Sets;
 use std::collections::BinaryHeap;
 
 /// Bars go on into their jambs for so many pixels, so that nothing slips past their ends.
@@ -212,8 +213,8 @@ impl<'a> Joining<'a> {
         self.age[to] = self.age[to].max(self.age[other]) + 1;
     }
 
-    /// Joins across the most open stretch, again and again, while there is one that parts nothing. A set that grows only
-    /// makes its openings less open, so that each is measured anew only when its turn comes.
+    /// Joins across the most open stretch, again and again, while there is one that parts nothing. A set that grows
+    /// only makes its openings less open, so that each is measured anew only when its turn comes.
     fn join_open(&mut self) {
         let mut queue: BinaryHeap<Openness> = (0..self.stretches.len()).map(|n| self.measure(n)).collect();
         while let Some(most) = queue.pop() {
@@ -314,8 +315,8 @@ impl<'a> Joining<'a> {
         Openness { value: share + tie + if small { 10.0 } else { 0.0 }, stretch, ages }
     }
 
-    /// How wide a set is beyond a stretch, at its widest within [`DEPTH`], measured along the bar, pixels; or as much as
-    /// is enough.
+    /// How wide a set is beyond a stretch, at its widest within [`DEPTH`], measured along the bar, pixels; or as much
+    /// as is enough.
     fn beyond(&mut self, stretch: usize, (set, side): (u32, f64), enough: f64) -> f64 {
         let Stretch { bar, pixels, .. } = &self.stretches[stretch];
         let [ux, uy] = self.bars[*bar].heading();
@@ -357,11 +358,10 @@ impl<'a> Joining<'a> {
 
 /// How many pixels of a run have a side on what is not free.
 fn touching_wall(raster: &Raster, run: &Run) -> usize {
-    let (free, width, pixels) = (&raster.free, raster.width, run.pixels());
+    let (free, pixels) = (&raster.free, run.pixels());
     let part = |at: usize| {
         let around = raster.sides(at).map(|beside| free.word(beside));
         (!(around[0] & around[1] & around[2] & around[3]) & lowest(pixels.end - at)).count_ones() as usize
     };
-    debug_assert!(pixels.start > width);
     pixels.clone().step_by(WORD).map(part).sum()
 }

@@ -1,5 +1,5 @@
-//! How far every pixel of the free space is from the nearest that is not free, squared, in pixels (Meijster, Roerdink and
-//! Hesselink 2000).
+//! How far every pixel of the free space is from the nearest that is not free, squared, in pixels (Meijster, Roerdink
+//! and Hesselink 2000).
 
 use super::raster::Raster;
 use super::runs::{Run, Runs};
@@ -7,7 +7,7 @@ use crate::bands::map_bands;
 use std::ops::Range;
 
 /// Rasters of more pixels than this are looked at piece by piece.
-pub const WHOLE: usize = 1 << 24;
+const WHOLE: usize = 1 << 24;
 /// So many rows at a time.
 const ROWS: usize = 128;
 

@@ -1,6 +1,7 @@
 //! Corridors as the regions see them: what runs across one at its full width is no door in it.
 
 use super::super::Label;
+use super::gaps::Bar;
 use crate::subdivision::distance;
 
 /// What is open over so much of a corridor's width is no door across it,
@@ -49,11 +50,12 @@ impl Corridor {
         within && p[1] * q[1] < 0.0 && across >= full * self.width && across >= (q[0] - p[0]).abs()
     }
 
-    /// A rectangle that holds the middle of every closure that runs across, none of which is longer than so much, metres.
+    /// A rectangle that holds the middle of every closure that runs across, none of which is longer than so much,
+    /// metres.
     pub fn around(&self, longest: f64) -> Vec<[f64; 2]> {
         let [from, to] = self.axis;
         let length = distance(from, to).max(1e-9);
-        let [tx, ty] = [0, 1].map(|n| (to[n] - from[n]) / length);
+        let [tx, ty] = Bar { ends: self.axis }.heading();
         let corner = |s: f64, t: f64| [from[0] + s * tx - t * ty, from[1] + s * ty + t * tx];
         let half = longest / 2.0;
         vec![corner(0.0, -half), corner(length, -half), corner(length, half), corner(0.0, half)]
@@ -61,10 +63,8 @@ impl Corridor {
 
     /// A point's place along the centre line, from its first end, and across it.
     fn place(&self, point: [f64; 2]) -> [f64; 2] {
-        let [from, to] = self.axis;
-        let length = distance(from, to).max(1e-9);
-        let [tx, ty] = [0, 1].map(|n| (to[n] - from[n]) / length);
-        let [x, y] = [0, 1].map(|n| point[n] - from[n]);
+        let [tx, ty] = Bar { ends: self.axis }.heading();
+        let [x, y] = [0, 1].map(|n| point[n] - self.axis[0][n]);
         [x * tx + y * ty, y * tx - x * ty]
     }
 }

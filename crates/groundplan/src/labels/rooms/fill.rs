@@ -2,7 +2,8 @@
 //! first.
 
 use super::raster::Raster;
-use super::runs::{Runs, Sets};
+use super::runs::Runs;
+use crate::sets::Sets;
 
 /// The numbers that some free pixels get, in ascending order as they are; none what no region is beside.
 pub fn fill(raster: &Raster, regions: &Runs, pixels: &[usize]) -> Vec<(usize, u32)> {

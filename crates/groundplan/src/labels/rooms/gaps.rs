@@ -3,6 +3,7 @@
 use super::super::Evidence;
 use super::raster::Raster;
 use crate::grid::angle_between;
+use crate::subdivision::distance;
 
 /// A straight closure of a gap, jamb to jamb, in the raster's places; both ends lie in free space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,8 +14,7 @@ pub struct Bar {
 impl Bar {
     /// Pixels.
     pub fn length(&self) -> f64 {
-        let [p, q] = self.ends;
-        ((q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)).sqrt()
+        distance(self.ends[0], self.ends[1])
     }
 
     /// True when one of its jambs belongs to something solid that stands by itself.

@@ -1,8 +1,8 @@
 //! What stands by itself in free space: furniture and posts, which part nothing, and solid things, which have no jambs.
 
-use super::bits::Bits;
 use super::raster::Raster;
-use super::runs::{Run, Sets, touching};
+use super::runs::{Run, touching};
+use crate::sets::Sets;
 
 /// Something small in free space, pixels.
 #[derive(Clone, Copy, Debug)]
@@ -17,8 +17,8 @@ const LEG: f64 = 0.8;
 /// The same for what is not slim: bins, pillars; a wall is less thick than this share of its length.
 const BLOB: f64 = 1.5;
 const SLIM: f64 = 0.4;
-/// What stands by itself, is so thick (from, to), metres, and fills its rectangle by this share, is no wall: no door has a jamb
-/// there.
+/// What stands by itself, is so thick (from, to), metres, and fills its rectangle by this share, is no wall: no door
+/// has a jamb there.
 const SOLID: (f64, f64) = (0.7, 4.0);
 const FILLED: f64 = 0.97;
 
@@ -101,7 +101,7 @@ impl Sums {
 }
 
 /// Looks at all that is not seen free and does not hang together with the raster's border.
-pub fn find(raster: &Raster, seen: &Bits) -> Islands {
+pub fn find(raster: &Raster) -> Islands {
     #[derive(Clone, Copy, PartialEq)]
     enum Mark {
         None,
@@ -111,7 +111,7 @@ pub fn find(raster: &Raster, seen: &Bits) -> Islands {
     let width = raster.width;
     let mut runs: Vec<Run> = Vec::new();
     for y in 0..raster.height {
-        runs.extend(seen.runs(y * width..(y + 1) * width, false).map(|run| Run::new(&run, 0)));
+        runs.extend(raster.free.runs(y * width..(y + 1) * width, false).map(|run| Run::new(&run, 0)));
     }
     let mut sets = Sets::new(runs.len());
     touching(&runs, width, 1, |own, below| sets.join_first(own as u32, below as u32));

@@ -1,11 +1,10 @@
 //! II-E: regions, the pieces of free space that a person calls a room, a hall or a corridor, and the doors between.
 //!
-//! Walls have gaps. Every gap in a line's structure ([`gaps`]) and every narrow of the free space ([`narrows`]) may be a
-//! door, and most are not: the free space is cut along all of them, and pieces are joined again across each cut that is
-//! about as wide as the space on one of its sides, the most open first ([`cells`]). A cut that stays is narrower than
-//! what lies on both its sides: a door.
+//! Walls have gaps. Every gap in a line's structure ([`gaps`]) and every narrow of the free space ([`narrows`]) may be
+//! a door, and most are not: the free space is cut along all of them, and pieces are joined again across each cut that
+//! is about as wide as the space on one of its sides, the most open first ([`cells`]). A cut that stays is narrower
+//! than what lies on both its sides: a door.
 
-mod bits;
 mod cells;
 mod clearance;
 mod corridors;
@@ -33,8 +32,8 @@ pub use raster::Raster;
 use runs::Runs;
 use std::collections::BTreeMap;
 
-/// What stands apart from all else is a region when it holds so much, square metres, and has room for a circle of such a
-/// radius, metres: less is a ray through a window.
+/// What stands apart from all else is a region when it holds so much, square metres, and has room for a circle of such
+/// a radius, metres: less is a ray through a window.
 const ALONE: (f64, f64) = (0.5, 0.15);
 /// A region is long when its area is so many times the square of its mean width.
 const LONG: f64 = 4.2;
@@ -310,8 +309,8 @@ fn regions(
     (regions, numbers)
 }
 
-/// Of the pixels of each number so many at most, evenly spaced; `number` is that of each run, `counts` says how many pixels
-/// there are of each.
+/// Of the pixels of each number so many at most, evenly spaced; `number` is that of each run, `counts` says how many
+/// pixels there are of each.
 fn samples(runs: &Runs, number: impl Fn(usize) -> u32, counts: &[usize], most: usize) -> Vec<Vec<usize>> {
     let steps: Vec<usize> = counts.iter().map(|count| count.div_ceil(most).max(1)).collect();
     let mut next = vec![0; counts.len()];

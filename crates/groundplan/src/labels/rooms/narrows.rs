@@ -3,8 +3,8 @@
 use super::clearance::Clearance;
 use super::gaps::Bar;
 use super::raster::Raster;
-use super::runs::Sets;
 use crate::bands::map_each;
+use crate::sets::Sets;
 use std::ops::Range;
 
 /// A narrow is at most this share as wide as the tighter of the two places that it joins.
@@ -16,7 +16,7 @@ const TOUCH: f64 = 1.6;
 /// and so far from side by side, as the cosine of the angle between them.
 const OPPOSITE: f64 = -0.3;
 /// Rasters of more pixels than this are looked at square by square.
-const WHOLE: usize = 1 << 22;
+const AT_ONCE: usize = 1 << 22;
 /// A large raster is looked at by squares of so many pixels, each with so much around it, metres, as a narrow and the
 /// places that it joins may take.
 const SQUARE: usize = 2048;
@@ -24,7 +24,7 @@ const AROUND: f64 = 8.0;
 
 /// Straight closures of all narrows, in the order of the places that they part; on a large raster, square by square.
 pub fn find(raster: &Raster, clearance: &Clearance, threads: usize) -> Vec<Bar> {
-    if let Some(clearance) = clearance.whole().filter(|all| all.len() <= WHOLE) {
+    if let Some(clearance) = clearance.whole().filter(|all| all.len() <= AT_ONCE) {
         return Window { clearance, width: raster.width }.narrows(raster).into_iter().map(|(_, bar)| bar).collect();
     }
     let around = raster.pixels(AROUND).ceil() as usize;

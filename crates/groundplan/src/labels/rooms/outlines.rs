@@ -1,11 +1,11 @@
 //! Outlines of regions: along the borders of their pixels, the same on both sides of a border, and simplified by less
 //! than what lies between two borders, so that no two outlines cross.
 
-use super::bits::Bits;
 use super::fine::Fine;
+use crate::bits::Bits;
 use crate::labels::outline::area;
 
-/// A point of an outline, in half pixels of the raster.
+/// A point of an outline, in half pixels of the regions' raster ([`Fine`]).
 type Point = [i64; 2];
 
 /// Outlines are simplified by at most the root of this many squared half pixels, over the second number: 0.35 pixels.

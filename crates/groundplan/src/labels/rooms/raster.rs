@@ -1,8 +1,8 @@
 //! The free space as a raster with a border of its own.
 
-use super::bits::{Bits, WORD, lowest};
 use super::islands::{self, Islands};
 use crate::bands::map_bands;
+use crate::bits::{Bits, WORD, lowest};
 use crate::grid::{Grid, State};
 
 /// The part of the map that holds free space, with one pixel of not-free around it, so that no pass asks for borders.
@@ -52,20 +52,18 @@ impl Raster {
         let (width, height) = (high[0] - low[0] + 3, high[1] - low[1] + 3);
         let mut free = Bits::new(width * height);
         for part in parts {
-            for y in part.rows[0].max(low[1])..=part.rows[1] {
-                if part.rows[0] <= part.rows[1] {
-                    let from = (y - part.first) * w + low[0];
-                    let to = (y - low[1] + 1) * width + 1;
-                    for n in (0..width - 2).step_by(WORD) {
-                        free.add(to + n, part.free.word(from + n) & lowest(width - 2 - n));
-                    }
+            for y in part.rows[0]..=part.rows[1] {
+                let from = (y - part.first) * w + low[0];
+                let to = (y - low[1] + 1) * width + 1;
+                for n in (0..width - 2).step_by(WORD) {
+                    free.add(to + n, part.free.word(from + n) & lowest(width - 2 - n));
                 }
             }
         }
         let corner = low.map(|n| side as f64 * (n as f64 - 1.0));
         let resolution = side as f64 * resolution;
         let mut made = Self { width, height, corner, side, resolution, free, islands: Islands::default() };
-        made.islands = islands::find(&made, &made.free);
+        made.islands = islands::find(&made);
         for run in made.islands.filled.runs() {
             made.free.fill(run.pixels());
         }

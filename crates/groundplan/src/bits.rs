@@ -1,4 +1,4 @@
-//! A bit for each pixel of a raster, row after row without gaps.
+//! Bits in words: a bit for each pixel, row after row without gaps.
 
 use std::ops::Range;
 
@@ -49,26 +49,31 @@ impl Bits {
 
     /// Runs of pixels in the set, or of those that are not, among some pixels.
     pub fn runs(&self, pixels: Range<usize>, wanted: bool) -> impl Iterator<Item = Range<usize>> + '_ {
-        let mut at = pixels.start;
-        std::iter::from_fn(move || {
-            let from = self.next(at, pixels.end, wanted);
-            at = self.next(from, pixels.end, !wanted);
-            (from < at).then_some(from..at)
-        })
+        runs(&self.0, pixels, wanted)
     }
+}
 
-    /// The next pixel that is in the set, or that is not, from one on; or the end.
-    fn next(&self, mut at: usize, end: usize, wanted: bool) -> usize {
-        while at < end {
-            let word = self.0[at / WORD] ^ if wanted { 0 } else { u64::MAX };
-            let ahead = (word >> (at % WORD)).trailing_zeros() as usize;
-            if ahead < WORD {
-                return (at + ahead).min(end);
-            }
-            at = (at / WORD + 1) * WORD;
+/// Runs of bits that are set, or of those that are not, among some bits; none is set beyond the last word.
+pub fn runs(words: &[u64], bits: Range<usize>, wanted: bool) -> impl Iterator<Item = Range<usize>> + '_ {
+    let mut at = bits.start;
+    std::iter::from_fn(move || {
+        let from = next(words, at, bits.end, wanted);
+        at = next(words, from, bits.end, !wanted);
+        (from < at).then_some(from..at)
+    })
+}
+
+/// The next bit that is set, or that is not, from one on; or the end.
+fn next(words: &[u64], mut at: usize, end: usize, wanted: bool) -> usize {
+    while at < end {
+        let word = words.get(at / WORD).copied().unwrap_or(0) ^ if wanted { 0 } else { u64::MAX };
+        let ahead = (word >> (at % WORD)).trailing_zeros() as usize;
+        if ahead < WORD {
+            return (at + ahead).min(end);
         }
-        end
+        at = (at / WORD + 1) * WORD;
     }
+    end
 }
 
 /// So many of a word's lowest bits.
