@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from _exports import GOOD, ODD, demo, same_twice
-from _program import call, files, write_map
+from _program import call, files, start, write_map
 from conftest import ROOT, SHARED
 
 import groundplan
@@ -61,6 +61,7 @@ def test_no_two_formats_have_the_same_file() -> None:
     assert len({form.suffix for form in FORMATS.values()}) == len(FORMATS)
 
 
+WAREHOUSE = ROOT / "examples" / "warehouse.yaml"
 WITHOUT_MAP = [name for name, form in FORMATS.items() if form.map != "must"]
 
 
@@ -88,7 +89,18 @@ def test_exporting_twice_with_the_map_gives_the_same_bytes(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1777593600")
-    assert same_twice(demo(), name, tmp_path, map=groundplan.read(ROOT / "examples" / "warehouse.yaml"))
+    assert same_twice(demo(), name, tmp_path, map=groundplan.read(WAREHOUSE))
+
+
+def test_another_process_writes_the_same_bytes(saved: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1777593600")
+    for seed in "14":  # under these two, sets of the names that DXF has are in different order
+        out = f"{tmp_path / seed}{os.sep}"
+        ran = start("export", saved, "--to", "all", "--map", WAREHOUSE, "-o", out, PYTHONHASHSEED=seed)
+        assert ran.code == 0, ran.err
+    names = files(tmp_path / "1")
+    assert len(names) >= len(FORMATS) and files(tmp_path / "4") == names
+    assert [n for n in sorted(names) if len({(tmp_path / seed / n).read_bytes() for seed in "14"}) > 1] == []
 
 
 @pytest.mark.parametrize("name", [name for name, form in FORMATS.items() if "date" in form.options])

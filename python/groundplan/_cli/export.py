@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -112,9 +113,10 @@ def run(arguments: argparse.Namespace) -> None:
         if map is not None:
             given["map"] = map
         out = arguments.out or f"{file.parent / 'export'}{os.sep}"
-        written, refused = write(survey, arguments.to, out, given, status)
+        written, refused, blocked = write(survey, arguments.to, out, given, status)
     if not arguments.quiet:
-        tell_blocked(survey, [form for form in arguments.to if form.name not in refused], given)
+        for sentence in blocked:
+            terminal.say("warning", sentence)
         terminal.put("".join(f"{file}\n" for file in written))
     tell(refused)
 
@@ -165,33 +167,39 @@ def ready(forms: list[Format], given: dict[str, Any]) -> Refused:
 
 def write(
     survey: Survey, forms: list[Format], out: str | Path, given: dict[str, Any], status: terminal.Status
-) -> tuple[list[Path], Refused]:
-    """Write formats, each with the options that it takes; of several, one that cannot say this survey stops none."""
+) -> tuple[list[Path], Refused, list[str]]:
+    """Write formats, each with the options that it takes; of several, one that cannot say this survey stops none.
+
+    What was written, what was refused, and what is to be said of their road map.
+    """
     from groundplan._errors import FormatError
     from groundplan.export import export
+    from groundplan.roadmap import built_once
 
     refused = ready(forms, given)
     place = out if len(forms) == 1 else f"{out}{os.sep}"
     written: list[Path] = []
-    for form in forms:
-        if form.name in refused:
-            continue
-        status(f"writing {form.name}")
-        try:
-            written += export(survey, place, form, **_own(form, given))
-        except FormatError as fault:
-            if len(forms) == 1 or not fault.code.startswith("export."):
-                raise
-            refused[form.name] = fault
-    return written, refused
+    with built_once():
+        for form in forms:
+            if form.name in refused:
+                continue
+            status(f"writing {form.name}")
+            try:
+                written += export(survey, place, form, **_own(form, given))
+            except FormatError as fault:
+                if len(forms) == 1 or not fault.code.startswith("export."):
+                    raise
+                refused[form.name] = fault
+        blocked = list(told_blocked(survey, [form for form in forms if form.name not in refused], given))
+    return written, refused, blocked
 
 
 #: So many pieces of lane are named, and the others counted.
 NAMED = 4
 
 
-def tell_blocked(survey: Survey, forms: list[Format], given: dict[str, Any]) -> None:
-    """Say what the road map leaves out because something stands in its way, or that it is empty."""
+def told_blocked(survey: Survey, forms: list[Format], given: dict[str, Any]) -> Iterator[str]:
+    """What the road map leaves out because something stands in its way, or that it is empty."""
     taking = [form for form in forms if "spurs" in form.options and not _is_of_places(form, given)]
     if not taking:
         return
@@ -200,11 +208,11 @@ def tell_blocked(survey: Survey, forms: list[Format], given: dict[str, Any]) -> 
 
     roads = road_map(survey, **{name: given[name] for name in (*ROADS, "map") if name in given})
     if not roads.lanes and any(form.name in OF_ROADS for form in taking):
-        terminal.say("warning", "the road map is empty: no corridor, and no door between regions, fits the vehicle")
+        yield "the road map is empty: no corridor, and no door between regions, fits the vehicle"
     if roads.blocked:
         named = [f"{piece.id} at ({piece.at[0]:.2f}, {piece.at[1]:.2f})" for piece in roads.blocked[:NAMED]]
         more = [f"{len(roads.blocked) - NAMED} more"] if len(roads.blocked) > NAMED else []
-        terminal.say("warning", f"lanes are left out where something stands in the way: {', '.join(named + more)}")
+        yield f"lanes are left out where something stands in the way: {', '.join(named + more)}"
 
 
 def _is_of_places(form: Format, given: dict[str, Any]) -> bool:

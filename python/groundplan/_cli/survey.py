@@ -169,9 +169,10 @@ def run(arguments: argparse.Namespace) -> None:
         picture = None if arguments.no_picture else "survey.png"
         written = [] if out is None else write(out, found, map, status, picture, arguments.figures)
         refused: export.Refused = {}
+        blocked: list[str] = []
         if arguments.export:
             place = f"{Path(out or '') / 'export'}{os.sep}"
-            files, refused = export.write(found, arguments.export, place, {"map": map}, status)
+            files, refused, blocked = export.write(found, arguments.export, place, {"map": map}, status)
             written += [str(file) for file in files]
     if arguments.json:
         terminal.put(found.to_json())
@@ -182,7 +183,8 @@ def run(arguments: argparse.Namespace) -> None:
             terminal.put(summary(found))
         for warning in found.warnings:
             terminal.say("warning", f"{warning.message} [{warning.code}]")
-        export.tell_blocked(found, [form for form in arguments.export if form.name not in refused], {"map": map})
+        for sentence in blocked:
+            terminal.say("warning", sentence)
         for file in written:
             terminal.say("wrote", file)
     export.tell(refused)

@@ -116,6 +116,9 @@ class Drawing:
             wide, high = (b - a for a, b in zip(self.low, self.high, strict=True))
             centre = (self.low[0] + wide / 2, self.low[1] + high / 2)
             self.doc.set_modelspace_vport(1.05 * max(high, wide / 1.6, 1e-3 * self.scale), centre)
+        # The classes in use would be listed in the order of a set.
+        for name in sorted(self.doc.entitydb.dxf_types_in_use()):
+            self.doc.classes.add_class(name)
         with _timeless():
             self.doc.saveas(path)
 

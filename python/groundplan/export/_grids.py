@@ -86,11 +86,16 @@ def write(
     return [yaml, pgm, *(beside or {})]
 
 
+def quoted(text: str) -> str:
+    """A text as JSON, which YAML reads whatever is in it."""
+    return json.dumps(text, ensure_ascii=False)
+
+
 def _yaml(frame: Frame, image: str, mode: str) -> str:
-    """Numbers in full, since map_saver's three decimals have cost people metres; texts as JSON, which YAML reads."""
+    """Numbers in full, since map_saver's three decimals have cost people metres."""
     x, y = frame.origin
     return (
-        f"image: {json.dumps(image, ensure_ascii=False)}\n"
+        f"image: {quoted(image)}\n"
         f"mode: {mode}\n"
         f"resolution: {frame.resolution:.12g}\n"
         f"origin: [{x:.9f}, {y:.9f}, 0.0]\n"

@@ -45,9 +45,7 @@ def write(
     multiplies a pixel's value by `multiplier`.
     """
     yaml, _ = _grids.names(path)
-    # A name that YAML reads whatever is in it.
-    quoted = '"' + yaml.name.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    said = PARAMETERS.format(name=name, yaml=quoted, type=type, multiplier=multiplier)
+    said = PARAMETERS.format(name=name, yaml=_grids.quoted(yaml.name), type=type, multiplier=multiplier)
     frame = _grids.covering(survey.map)
     return _grids.write(path, frame, bands(frame, painted), "raw", {yaml.with_suffix(".params.yaml"): said})
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 import itertools
 import math
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import numpy.typing as npt
 import shapely
 
 from groundplan._shapes import outline
@@ -114,12 +117,26 @@ def main_angle(survey: Survey) -> float:
     return float(survey.directions.angles[0]) if len(survey.directions) else 0.0
 
 
+def spread(survey: Survey, found: Sequence[Place]) -> npt.NDArray[np.float64]:
+    """Points, n x 2, between which lies all that was found; the map's corners where that has no extent."""
+    shapes = [place.shape if place.shape is not None else shapely.Point(place.centre) for place in found]
+    points = np.concatenate([shapely.get_coordinates(shapes), survey.walls.points.reshape(-1, 2)])
+    if not len(points) or not np.ptp(points, axis=0).min() > 0:
+        points = survey.subdivision.vertices
+    return points
+
+
+def forwards(x: float, y: float) -> bool:
+    """Whether numbers run that way: right, or up; the same half-turn as in the corridors' numbers."""
+    return 0.927 * x + 0.375 * y >= 0
+
+
 def in_rows(points: list[tuple[float, float]], angle: float, row_m: float = 1.0) -> list[int]:
     """The order in which points are numbered: row by row along an angle, from the lower left; rows are 1 m apart."""
     cos, sin = math.cos(angle), math.sin(angle)
-    # Forwards is right and up, whichever way the direction happened to be measured.
-    along_sign = 1.0 if 0.927 * cos + 0.375 * sin >= 0 else -1.0
-    across_sign = 1.0 if -0.927 * sin + 0.375 * cos >= 0 else -1.0
+    # Whichever way the direction happened to be measured.
+    along_sign = 1.0 if forwards(cos, sin) else -1.0
+    across_sign = 1.0 if forwards(-sin, cos) else -1.0
     along = [along_sign * (x * cos + y * sin) for x, y in points]
     across = [across_sign * (y * cos - x * sin) for x, y in points]
     rows: list[list[int]] = []

@@ -8,8 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import matplotlib
-import numpy as np
-import numpy.typing as npt
 import shapely
 from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure
@@ -17,7 +15,7 @@ from matplotlib.figure import Figure
 from groundplan._files import whole
 from groundplan.export import _report
 from groundplan.export._dates import moment
-from groundplan.export._places import Place, places
+from groundplan.export._places import Place, places, spread
 from groundplan.export._text import one_line
 from groundplan.figures._directions import directions, radiograms
 from groundplan.figures._dual import abstraction, connectivity, edge_features, subdivision_and_dual
@@ -63,7 +61,7 @@ def write(survey: Survey, path: Path, date: str | datetime | None = None, map: M
 
 def _sheets(survey: Survey, title: str, when: datetime, map: Map | None) -> Iterator[Figure]:
     found = places(survey)
-    view = underlay(map) if map is not None else _report.bare(survey, _reach(survey, found))
+    view = underlay(map) if map is not None else _report.bare(survey, spread(survey, found))
     small = underlay(map, longest=SMALL) if map is not None else view
     yield _report.plan(survey, view, title, f"{when:%Y-%m-%d %H:%M} UTC")
     if map is not None:
@@ -83,15 +81,6 @@ def _sheets(survey: Survey, title: str, when: datetime, map: Map | None) -> Iter
         title = f"Places; {left} more are in the table that --to csv writes" if left else "Places"
         yield from _report.tables(title, HEAD, rows, WIDTHS)
     yield from _report.warnings(survey)
-
-
-def _reach(survey: Survey, found: list[Place]) -> npt.NDArray[np.float64]:
-    """Points that hold all that was found, or the map's corners."""
-    shapes = [place.shape if place.shape is not None else shapely.Point(place.centre) for place in found]
-    points = np.concatenate([shapely.get_coordinates(shapes), survey.walls.points.reshape(-1, 2)])
-    if not len(points) or not np.ptp(points, axis=0).min() > 0:
-        points = survey.subdivision.vertices
-    return points
 
 
 def _row(place: Place, found: list[Place]) -> list[str]:

@@ -7,12 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 
 from groundplan._errors import ParameterError
 from groundplan._files import write_bytes
 from groundplan._shapes import readable
-from groundplan.export._places import Place, places
+from groundplan.export._places import Place, places, spread
 from groundplan.export._svg import Drawing, names_on
 from groundplan.figures import _style as ink
 from groundplan.figures._labels import JUNCTION_NAMES, door_direction, name_corridors, name_regions
@@ -72,12 +71,8 @@ def write(survey: Survey, path: Path, scale: float | None = None, map: Map | Non
 
 
 def _extent(survey: Survey, found: list[Place]) -> Extent:
-    """What was found, else the whole map."""
-    shapes = [place.shape if place.shape is not None else shapely.Point(place.centre) for place in found]
-    walls = shapely.multipoints(survey.walls.points.reshape(-1, 2))
-    x0, y0, x1, y1 = shapely.total_bounds([*shapes, walls])
-    if not (x1 > x0 and y1 > y0):
-        x0, y0, x1, y1 = shapely.total_bounds(shapely.points(survey.subdivision.vertices))
+    points = spread(survey, found)
+    (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
     return float(x0), float(x1), float(y0), float(y1)
 
 

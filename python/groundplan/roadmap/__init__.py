@@ -12,7 +12,9 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any
 
 from groundplan._errors import ParameterError
@@ -23,7 +25,9 @@ if TYPE_CHECKING:
     from groundplan.maps import Map
     from groundplan.survey import Survey
 
-__all__ = ["Blocked", "Directed", "Lane", "Node", "PickFace", "RoadMap", "Zone", "road_map"]
+__all__ = ["Blocked", "Directed", "Lane", "Node", "PickFace", "RoadMap", "Zone", "built_once", "road_map"]
+
+_built: ContextVar[dict[Any, RoadMap] | None] = ContextVar("built", default=None)
 
 
 def road_map(
@@ -70,4 +74,23 @@ def road_map(
     from groundplan.roadmap._build import build
     from groundplan.roadmap._rules import rules as read_rules
 
-    return build(survey, read_rules(rules), vehicle_width, spurs, map)
+    built = _built.get()
+    if built is None:
+        return build(survey, read_rules(rules), vehicle_width, spurs, map)
+    asked = id(survey), repr(rules), vehicle_width, spurs, id(map)
+    if asked not in built:
+        built[asked] = build(survey, read_rules(rules), vehicle_width, spurs, map)
+    return built[asked]
+
+
+@contextmanager
+def built_once() -> Iterator[None]:
+    """Within, a road map that is asked for again is the one that was made, as several formats of one export do.
+
+    The surveys, maps and rules that are asked with have to live, and to stay as they are, as long as that.
+    """
+    token = _built.set({})
+    try:
+        yield
+    finally:
+        _built.reset(token)

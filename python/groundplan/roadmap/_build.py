@@ -146,7 +146,7 @@ class _Builder:
     def _foot(self, corridor: int, along: float, id: str, name: str) -> int:
         """The stop at a place of a lane: one that is there, or a new one."""
         way = self.ways[corridor]
-        near = min(way.stops, key=lambda stop: abs(stop[0] - along))
+        near = way.nearest(along)
         if abs(near[0] - along) <= _doors.AT_STOP_M:
             return near[1]
         made = self._node(f"{way.place.id}.{id}", "foot", way.point(along), f"{way.place.name} {name}")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from groundplan.roadmap._faces import posts
 from groundplan.roadmap._lanes import Way
 from groundplan.roadmap._pixels import Floats, Pixels
 
@@ -70,18 +71,12 @@ def _side(survey: Survey, places: list[Place], way: Way, side: float, s: Floats,
 
 def _due(survey: Survey, places: list[Place], way: Way, side: float) -> Iterator[float]:
     """Where posts are due along a corridor, by the pitch and phase of the racks on one side of it."""
-    for rack in places:
-        label = survey.labels[rack.label]
-        pitch = label.get("pitch")
-        if rack.kind != "rack" or rack.axis is None or not pitch or rack.width is None:
+    for row in posts(survey, places):
+        ends = [way.place_of(p) for p in row.axis]
+        gap = abs(side * (ends[0][1] + ends[1][1]) / 2 - row.width / 2 - way.width / 2)
+        if gap > BEFORE_M or abs(ends[0][1] - ends[1][1]) > 0.1 * row.length:
             continue
-        ends = [way.place_of(p) for p in rack.axis]
-        length = math.dist(*rack.axis)
-        gap = abs(side * (ends[0][1] + ends[1][1]) / 2 - rack.width / 2 - way.width / 2)
-        if length <= 0 or length / pitch > 10_000 or gap > BEFORE_M or abs(ends[0][1] - ends[1][1]) > 0.1 * length:
-            continue
-        first = float(label.get("phase") or 0.0) % pitch
-        for n in range(math.floor((length - first) / pitch) + 1):
-            along = ends[0][0] + (ends[1][0] - ends[0][0]) * (first + n * pitch) / length
+        for n in range(math.floor((row.length - row.first) / row.pitch) + 1):
+            along = ends[0][0] + (ends[1][0] - ends[0][0]) * (row.first + n * row.pitch) / row.length
             if ENDS_M < along < way.length - ENDS_M:
                 yield along

@@ -202,12 +202,8 @@ class Regions:
         if not self.within.get(region):
             yield None, 0.0
         for corridor in self.within.get(region, ()):
-            way = self.ways[corridor]
-            along, _ = way.place_of(seen)
-            if way.lies_on_a_lane(along):
+            for along in self.ways[corridor].targets(seen):
                 yield corridor, along
-            for end in (way.stops[0][0], way.stops[-1][0]):
-                yield corridor, end
 
     def _inward(self, door: Place, region: int) -> Point:
         """Square to the door, into the region."""

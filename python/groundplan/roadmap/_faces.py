@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from groundplan.roadmap._lanes import Way, forwards
+from groundplan.export._places import Place, forwards
+from groundplan.roadmap._lanes import Way
 from groundplan.roadmap._model import Point
 
 if TYPE_CHECKING:
-    from groundplan.export._places import Place
     from groundplan.survey import Survey
 
 #: A rack's face wavers, and so does the side of the aisle: they are one when no more than this lies between, metres.
@@ -42,28 +43,45 @@ class Foot:
     bays: list[Bay]
 
 
-def bays(survey: Survey, places: list[Place], ways: dict[int, Way]) -> list[Bay]:
-    """Every bay's open sides that lie on an aisle. Racks tell theirs by ``pitch`` and ``phase``, metres along the axis:
-    from post to post, and from the axis' start to the first post.
-    """  # noqa: D205
-    found = []
+@dataclass
+class Posts:
+    """The posts of a rack that tells its bays: metres from post to post, and along its axis to the first post."""
+
+    rack: Place
+    axis: tuple[Point, Point]
+    width: float
+    length: float
+    pitch: float
+    first: float
+
+
+def posts(survey: Survey, places: list[Place]) -> Iterator[Posts]:
+    """Of each rack that has a ``pitch``; its ``phase`` is where along its axis the first post stands."""
     for rack in places:
         label = survey.labels[rack.label]
         pitch = label.get("pitch")
         if rack.kind != "rack" or rack.axis is None or not pitch or rack.width is None:
             continue
-        (x0, y0), (x1, y1) = rack.axis
         length = math.dist(*rack.axis)
-        if length <= 0 or pitch <= 0 or length / pitch > 10_000:
-            continue
-        u, v = (x1 - x0) / length, (y1 - y0) / length
-        first = float(label.get("phase") or 0.0) % pitch
+        if length > 0 and pitch > 0 and length / pitch <= 10_000:
+            yield Posts(
+                rack, (rack.axis[0], rack.axis[1]), rack.width, length, pitch, float(label.get("phase") or 0.0) % pitch
+            )
+
+
+def bays(survey: Survey, places: list[Place], ways: dict[int, Way]) -> list[Bay]:
+    """Every bay's open sides that lie on an aisle."""
+    found = []
+    for row in posts(survey, places):
+        rack, pitch = row.rack, row.pitch
+        (x0, y0), (x1, y1) = row.axis
+        u, v = (x1 - x0) / row.length, (y1 - y0) / row.length
         # A rack that ends a little before its last post has that bay all the same.
-        count = max(0, math.floor((length - first) / pitch + 0.25))
+        count = max(0, math.floor((row.length - row.first) / pitch + 0.25))
         turned = not forwards(u, v)
         for side, letter in ((1.0, "RL"[not turned]), (-1.0, "LR"[not turned])):
             for n in range(count):
-                s, across = first + (n + 0.5) * pitch, side * rack.width / 2
+                s, across = row.first + (n + 0.5) * pitch, side * row.width / 2
                 at = x0 + s * u - across * v, y0 + s * v + across * u
                 aisle = _aisle(at, (-side * v, side * u), ways)
                 if aisle is not None:

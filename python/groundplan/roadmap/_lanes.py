@@ -5,16 +5,16 @@ from __future__ import annotations
 import bisect
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import shapely
 
+from groundplan.export._places import Place, forwards
 from groundplan.roadmap._model import Point
 
 if TYPE_CHECKING:
-    from groundplan.export._places import Place
     from groundplan.survey import Survey
 
 #: Axes cross when they are this far from parallel: beyond what noise does to one aisle that goes on behind another.
@@ -75,6 +75,18 @@ class Way:
             return None
         return shapely.LineString([self.point(self.stops[0][0]), self.point(self.stops[-1][0])])
 
+    def nearest(self, along: float) -> tuple[float, int]:
+        """The stop nearest to a place, and where it is."""
+        return min(self.stops, key=lambda stop: abs(stop[0] - along))
+
+    def targets(self, seen: Point) -> Iterator[float]:
+        """Where a way that comes from a place may meet the lane: square to it, or at its ends."""
+        along, _ = self.place_of(seen)
+        if self.lies_on_a_lane(along):
+            yield along
+        yield self.stops[0][0]
+        yield self.stops[-1][0]
+
     def outwards(self, along: float) -> Point:
         """The direction in which it ends at that end of it which is nearer to a place."""
         sign = 1.0 if along > self.length / 2 else -1.0
@@ -83,11 +95,6 @@ class Way:
     def lies_on_a_lane(self, along: float) -> bool:
         """Whether there is a lane at that place."""
         return len(self.stops) > 1 and self.stops[0][0] <= along <= self.stops[-1][0]
-
-
-def forwards(x: float, y: float) -> bool:
-    """Whether numbers run that way: right, or up; the same half-turn as in the corridors' numbers."""
-    return 0.927 * x + 0.375 * y >= 0
 
 
 def ways(places: Sequence[Place]) -> dict[int, Way]:
@@ -109,11 +116,11 @@ def ways(places: Sequence[Place]) -> dict[int, Way]:
 
 def narrowest(ways: dict[int, Way]) -> float:
     """How wide a corridor has to be to have a lane where no vehicle is given, metres."""
-    longest = sum(way.length for way in ways.values())
+    total = sum(way.length for way in ways.values())
     passed = 0.0
     for way in sorted(ways.values(), key=lambda way: way.width):
         passed += way.length
-        if passed >= longest / 2:  # half the length of all ways is narrower than this one
+        if passed >= total / 2:  # half the length of all ways is narrower than this one
             return min(GAP_M, GAP_SHARE * way.width)
     return 0.0
 

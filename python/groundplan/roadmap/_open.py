@@ -20,8 +20,6 @@ from groundplan.roadmap._model import Lane, Node, Point
 
 #: An aisle that ends in the open goes on so far beyond its racks that a lane across it clears them, metres.
 BEYOND_M = 1.0
-
-
 #: A link along a hall's side is worth having where the way round is so many times as long.
 SPARED = 3.0
 
@@ -55,7 +53,7 @@ class Net:
 
     def length(self, stop: int, corridor: int, along: float) -> float:
         """How far it is from a stop to about a place on a corridor; infinite without lanes."""
-        place, node = self._nearest(corridor, along)
+        place, node = self.ways[corridor].nearest(along)
         try:
             way: float = networkx.dijkstra_path_length(self.graph, stop, node, weight="length")
         except networkx.NetworkXNoPath:
@@ -64,11 +62,8 @@ class Net:
 
     def link(self, stop: int, corridor: int, along: float, length: float) -> None:
         """Add a link."""
-        place, node = self._nearest(corridor, along)
+        place, node = self.ways[corridor].nearest(along)
         self.graph.add_edge(stop, node, length=length + abs(place - along))
-
-    def _nearest(self, corridor: int, along: float) -> tuple[float, int]:
-        return min(self.ways[corridor].stops, key=lambda stop: abs(stop[0] - along))
 
 
 def straight_on(regions: Regions, ways: dict[int, Way], corridor: int, far: bool) -> tuple[int, float] | None:
@@ -109,7 +104,7 @@ def links(regions: Regions, ways: dict[int, Way], nodes: list[Node], net: Net, a
                 at, outwards = ways[corridor].point(along), ways[corridor].outwards(along)
                 if regions.outside(region, at):
                     continue
-                for target in _targets(ways[other], at):
+                for target in ways[other].targets(at):
                     to = ways[other].point(target)
                     for turn in (None, *_corners(at, to, angle)):
                         points = [at, *([] if turn is None else [turn]), to]
@@ -131,14 +126,6 @@ def goes_on(regions: Regions, way: Way, far: bool) -> float | None:
     ahead = way.length + BEYOND_M if far else -BEYOND_M
     points = [way.point(way.length if far else 0.0), way.point(ahead)]
     return ahead if any(regions.open(region, points) for region in regions.within) else None
-
-
-def _targets(way: Way, seen: Point) -> Iterator[float]:
-    along, _ = way.place_of(seen)
-    if way.lies_on_a_lane(along):
-        yield along
-    yield way.stops[0][0]
-    yield way.stops[-1][0]
 
 
 def _corners(a: Point, b: Point, angle: float) -> list[Point]:
