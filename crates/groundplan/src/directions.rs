@@ -5,7 +5,7 @@ use crate::grid::{Frame, angle_between, tidy, tidy_angle, undirected};
 use crate::oriented::{BINS, Oriented, Sharpness};
 use crate::parameters::Parameters;
 use crate::radiograms::{UNIT, bins, metres_per_unit, project};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The dominant directions, strongest first, and what they were decided from.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -42,6 +42,11 @@ const CLOSEST: f64 = 1e-6;
 const SEARCH: [(f64, f64); 3] = [(3.0, 0.25), (0.3, 0.05), (0.06, 0.01)];
 /// How often the search moves on, at most.
 const MOST_MOVES: usize = 2;
+/// Directions are whole parts of a right angle, 2 to this power of them: what changes in a corner of a map as a rule
+/// turns none of them, and so moves no line elsewhere.
+const PARTS_BITS: u32 = 15;
+/// Of a large map so many more that this moves the end of a line against its middle by no more than that, pixels.
+const MOST_MOVED: f64 = 0.1;
 /// A line shorter than this many pixels says nothing of a direction.
 const SHORTEST_PIXELS: f64 = 20.0;
 /// Half the window of the background that a line must stand out of, pixels.
@@ -201,7 +206,17 @@ fn sharpest(frame: &Frame, rest: &Oriented, start: f64, parameters: &Parameters)
             }
         }
     }
-    undirected(best)
+    undirected(settled(frame, best))
+}
+
+/// The nearest whole part of a right angle.
+fn settled(frame: &Frame, angle: f64) -> f64 {
+    let reach = libm::hypot(frame.width as f64, frame.height as f64) / 2.0;
+    let mut part = FRAC_PI_2 / f64::from(1u32 << PARTS_BITS);
+    while part / 2.0 * reach > MOST_MOVED {
+        part /= 2.0;
+    }
+    (angle / part).round() * part
 }
 
 /// Where the parabola through three equally spaced values has its top, in steps from the middle one.

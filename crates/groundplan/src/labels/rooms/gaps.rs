@@ -93,7 +93,7 @@ fn lined(evidence: &Evidence, raster: &Raster, angle: f64, offsets: &[f64]) -> V
         let (u, v) = (x * cos + y * sin, y * cos - x * sin);
         let first = offsets.partition_point(|&offset| offset < v - near);
         for (line, _) in offsets.iter().enumerate().skip(first).take_while(|(_, offset)| **offset <= v + near) {
-            steps[line].push((u / raster.side as f64).round() as i64);
+            steps[line].push((u / raster.side as f64).floor() as i64);
         }
     }
     for list in &mut steps {
@@ -119,8 +119,9 @@ impl<'a> Line<'a> {
         Self { raster, origin, step }
     }
 
+    /// The middle of a step: where a line runs along the pixels, the ends of a step lie between them.
     fn place(&self, step: i64) -> [f64; 2] {
-        [0, 1].map(|axis| self.origin[axis] + self.step[axis] * step as f64)
+        [0, 1].map(|axis| self.origin[axis] + self.step[axis] * (step as f64 + 0.5))
     }
 
     /// The steps that lie on the raster: from, to.
