@@ -270,13 +270,11 @@ mod _core {
                 gradients: &gradients,
                 directions: &directions,
                 lines: &lines,
-                subdivision: &subdivision,
-                occupancy: &occupancy,
-                adjacency: &adjacency,
                 parameters: &parameters,
                 threads,
             };
-            let made = labels::find_labels(&evidence, None);
+            let division = labels::Division { subdivision: &subdivision, occupancy: &occupancy, adjacency: &adjacency };
+            let made = labels::find_labels(&evidence, &division);
             let confidence = labels::find_confidence(&evidence, &made);
             (made, confidence)
         })?;

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread::{Scope, ScopedJoinHandle};
 
 /// Rows of one band: enough to be worth a thread's while, few enough to share out evenly.
 pub const BAND_ROWS: usize = 64;
@@ -19,16 +20,39 @@ pub fn map_each<T: Send>(count: usize, threads: usize, make: impl Fn(usize) -> T
     made.into_iter().map(|(_, t)| t).collect()
 }
 
-/// What two things make, side by side where threads were asked for.
-pub fn both<A: Send, B>(threads: usize, one: impl FnOnce() -> A + Send, other: impl FnOnce() -> B) -> (A, B) {
-    if threads <= 1 {
-        return (one(), other());
+/// Work of which parts can be started beside the rest, where threads were asked for.
+pub fn side_by_side<'env, R>(threads: usize, work: impl for<'s> FnOnce(Side<'s, 'env>) -> R) -> R {
+    if threads <= 1 { work(Side(None)) } else { std::thread::scope(|scope| work(Side(Some(scope)))) }
+}
+
+/// Where work can be started beside what the thread does itself.
+#[derive(Clone, Copy)]
+pub struct Side<'scope, 'env>(Option<&'scope Scope<'scope, 'env>>);
+
+impl<'scope> Side<'scope, '_> {
+    /// Starts something on a thread of its own; without threads it is made at once.
+    pub fn start<T: Send + 'scope>(self, make: impl FnOnce() -> T + Send + 'scope) -> Later<'scope, T> {
+        match self.0 {
+            Some(scope) => Later::Started(scope.spawn(make)),
+            None => Later::Made(make()),
+        }
     }
-    std::thread::scope(|scope| {
-        let handle = scope.spawn(one);
-        let other = other();
-        (handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), other)
-    })
+}
+
+/// What was started.
+pub enum Later<'scope, T> {
+    Made(T),
+    Started(ScopedJoinHandle<'scope, T>),
+}
+
+impl<T> Later<'_, T> {
+    /// What was made, waiting for it where it is not there yet.
+    pub fn get(self) -> T {
+        match self {
+            Self::Made(made) => made,
+            Self::Started(handle) => handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+        }
+    }
 }
 
 fn band(n: usize, rows: usize) -> Range<usize> {

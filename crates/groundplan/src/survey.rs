@@ -2,11 +2,13 @@
 
 use crate::adjacency::{Adjacency, find_adjacency};
 use crate::arrangement::arrange;
-use crate::bands::both;
+use crate::bands::side_by_side;
 use crate::directions::{Directions, find_directions};
 use crate::gradients::{Gradients, find_gradients};
 use crate::grid::Grid;
-use crate::labels::{Evidence, Ground, Label, Pattern, find_confidence, find_labels, find_patterns};
+use crate::labels::{
+    Division, Evidence, Ground, Label, Pattern, Sketch, find_confidence, find_labels, find_labels_in, find_patterns,
+};
 use crate::lines::{Lines, find_lines};
 use crate::occupancy::{Occupancy, find_occupancy};
 use crate::parameters::{Method, Parameters};
@@ -69,25 +71,48 @@ pub struct Given {
 /// Surveys a grid. Total: any grid and parameters give a valid subdivision, at worst one face, and warnings.
 #[must_use]
 pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> Survey {
+    let frame = &grid.frame;
     let strips = parameters.labels_method == Method::Strips;
-    let ground = || strips.then(|| Ground::new(grid, threads));
-    // What the labels need of the pixels alone is made meanwhile.
-    let (ground, mut survey) = both(threads, ground, || without_labels(grid, parameters, given, threads));
-    let evidence = Evidence {
-        grid,
-        gradients: &survey.gradients,
-        directions: &survey.directions,
-        lines: &survey.lines,
-        subdivision: &survey.subdivision,
-        occupancy: &survey.occupancy,
-        adjacency: &survey.adjacency,
-        parameters,
-        threads,
-    };
-    let labels = find_labels(&evidence, ground.as_ref());
-    survey.confidence = find_confidence(&evidence, &labels);
-    survey.labels = labels;
-    survey.patterns = find_patterns(&survey.directions, &survey.labels);
+    // What the labels need of the pixels alone, and then of the lines, is made beside the other stages.
+    let mut survey = side_by_side(threads, |side| {
+        let ground = strips.then(|| Ground::start(side, grid, threads));
+        let gradients = given.gradients.unwrap_or_else(|| find_gradients(grid, parameters, threads));
+        let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters));
+        let radiograms = find_radiograms(frame, &gradients, &directions, parameters);
+        let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
+        let evidence =
+            Evidence { grid, gradients: &gradients, directions: &directions, lines: &lines, parameters, threads };
+        let (divided, labels, confidence) = side_by_side(threads, |side| {
+            let divided = side.start(|| Divided::new(&evidence, given.sums));
+            let sketch = ground.map(|ground| Sketch::new(side, &evidence, ground));
+            let divided = divided.get();
+            let Divided { subdivision, occupancy, adjacency, .. } = &divided;
+            let division = Division { subdivision, occupancy, adjacency };
+            let labels = match sketch {
+                Some(sketch) => find_labels_in(&evidence, &division, sketch),
+                None => find_labels(&evidence, &division),
+            };
+            let confidence = find_confidence(&evidence, &labels);
+            (divided, labels, confidence)
+        });
+        let Divided { subdivision, occupancy, walls, adjacency } = divided;
+        let patterns = find_patterns(&directions, &labels);
+        let warnings = Vec::new();
+        Survey {
+            gradients,
+            directions,
+            radiograms,
+            lines,
+            subdivision,
+            occupancy,
+            walls,
+            adjacency,
+            labels,
+            confidence,
+            patterns,
+            warnings,
+        }
+    });
     survey.warnings = find_warnings(&survey, parameters);
     survey.warnings.extend(undecided(&survey.labels, &survey.confidence));
     debug_assert_eq!(survey.subdivision.problems(), Vec::<String>::new());
@@ -95,34 +120,28 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
     survey
 }
 
-/// The stages up to the adjacency.
-fn without_labels(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> Survey {
-    let frame = &grid.frame;
-    let gradients = given.gradients.unwrap_or_else(|| find_gradients(grid, parameters, threads));
-    let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters));
-    let radiograms = find_radiograms(frame, &gradients, &directions, parameters);
-    let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
-    let arrangement = arrange(frame, &directions.angles, &lines);
-    let fits = |sums: &FaceSums| [&sums.within, &sums.under].iter().all(|part| part.len() == arrangement.face_count());
-    let sums = given.sums.filter(fits).unwrap_or_else(|| FaceSums::new(grid, &arrangement, 0..frame.height, threads));
-    let occupancy = find_occupancy(frame, &sums, &arrangement, &directions, &lines, &gradients, parameters);
-    drop(sums);
-    let subdivision = Subdivision::new(frame, arrangement);
-    let walls = find_walls(&subdivision, &occupancy, parameters);
-    let adjacency = find_adjacency(&subdivision, &walls);
-    Survey {
-        gradients,
-        directions,
-        radiograms,
-        lines,
-        subdivision,
-        occupancy,
-        walls,
-        adjacency,
-        labels: Vec::new(),
-        confidence: Vec::new(),
-        patterns: Vec::new(),
-        warnings: Vec::new(),
+/// The map as its lines divide it.
+struct Divided {
+    subdivision: Subdivision,
+    occupancy: Occupancy,
+    walls: Walls,
+    adjacency: Adjacency,
+}
+
+impl Divided {
+    fn new(evidence: &Evidence, given: Option<FaceSums>) -> Self {
+        let Evidence { grid, gradients, directions, lines, parameters, threads } = *evidence;
+        let frame = &grid.frame;
+        let arrangement = arrange(frame, &directions.angles, lines);
+        let faces = arrangement.face_count();
+        let fits = |sums: &FaceSums| [&sums.within, &sums.under].iter().all(|part| part.len() == faces);
+        let sums = given.filter(fits).unwrap_or_else(|| FaceSums::new(grid, &arrangement, 0..frame.height, threads));
+        let occupancy = find_occupancy(frame, &sums, &arrangement, directions, lines, gradients, parameters);
+        drop(sums);
+        let subdivision = Subdivision::new(frame, arrangement);
+        let walls = find_walls(&subdivision, &occupancy, parameters);
+        let adjacency = find_adjacency(&subdivision, &walls);
+        Self { subdivision, occupancy, walls, adjacency }
     }
 }
 

@@ -20,6 +20,7 @@ mod racks;
 mod ragged;
 mod rooms;
 mod sections;
+mod sketch;
 mod strips;
 mod sums;
 mod turned;
@@ -28,7 +29,7 @@ pub use confidence::find_confidence;
 pub use patterns::{Pattern, PatternKind, find_patterns};
 
 use crate::adjacency::Adjacency;
-use crate::bands::both;
+use crate::bands::{Later, Side, side_by_side};
 use crate::directions::Directions;
 use crate::gradients::Gradients;
 use crate::grid::Grid;
@@ -39,6 +40,8 @@ use crate::subdivision::Subdivision;
 use crate::tiles::Tiles;
 use look::Look;
 use rooms::Space;
+pub(crate) use sketch::Sketch;
+pub(crate) use strips::find as find_labels_in;
 
 /// Kinds of junctions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -179,7 +182,7 @@ impl Purpose {
     }
 }
 
-/// What the labels are found from: the map, and what the stages before made of it.
+/// What the labels are found from: the map, and what the stages up to the lines made of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Evidence<'a> {
     /// The map.
@@ -190,40 +193,45 @@ pub struct Evidence<'a> {
     pub directions: &'a Directions,
     /// II-B: lines.
     pub lines: &'a Lines,
-    /// II-C: vertices, edges, faces.
-    pub subdivision: &'a Subdivision,
-    /// II-D: O(face), O(edge).
-    pub occupancy: &'a Occupancy,
-    /// II-D: the dual.
-    pub adjacency: &'a Adjacency,
     /// How to find them.
     pub parameters: &'a Parameters,
     /// At most so many.
     pub threads: usize,
 }
 
-/// What the labels take from the pixels alone, whatever the stages between find: it can be made while they are at work.
-pub struct Ground<'a> {
-    look: Look<'a>,
-    space: Option<Space>,
+/// The map as its lines divide it: what the labels' faces are taken from.
+#[derive(Clone, Copy, Debug)]
+pub struct Division<'a> {
+    /// II-C: vertices, edges, faces.
+    pub subdivision: &'a Subdivision,
+    /// II-D: O(face), O(edge).
+    pub occupancy: &'a Occupancy,
+    /// II-D: the dual.
+    pub adjacency: &'a Adjacency,
 }
 
-impl<'a> Ground<'a> {
-    /// The free space of a map, and where the map is all alike.
-    #[must_use]
-    pub fn new(grid: &Grid<'a>, threads: usize) -> Self {
-        let tiles = Tiles::new(grid, threads);
-        let (look, space) = both(threads, || Look::new(grid, &tiles), || Space::new(grid, threads));
-        Self { look, space }
+/// What the labels take from the pixels alone, whatever the stages before them find.
+pub(crate) struct Ground<'scope, 'a> {
+    look: Later<'scope, Look<'a>>,
+    space: Later<'scope, Option<Space>>,
+}
+
+impl<'scope, 'a: 'scope> Ground<'scope, 'a> {
+    /// Begins to look at a map.
+    pub fn start(side: Side<'scope, '_>, grid: &'scope Grid<'a>, threads: usize) -> Self {
+        let look = side.start(move || Look::new(grid, &Tiles::new(grid, threads)));
+        Self { look, space: side.start(move || Space::new(grid, threads)) }
     }
 }
 
-/// Finds the labels by the method that the parameters name; corridors first. The ground is made where it is not given.
+/// Finds the labels by the method that the parameters name; corridors first.
 #[must_use]
-pub fn find_labels(evidence: &Evidence, ground: Option<&Ground>) -> Vec<Label> {
-    match (evidence.parameters.labels_method, ground) {
-        (Method::Strips, Some(ground)) => strips::find(evidence, ground),
-        (Method::Strips, None) => strips::find(evidence, &Ground::new(evidence.grid, evidence.threads)),
-        (Method::Paper, _) => paper::find(evidence),
+pub fn find_labels(evidence: &Evidence, division: &Division) -> Vec<Label> {
+    match evidence.parameters.labels_method {
+        Method::Paper => paper::find(evidence, division),
+        Method::Strips => side_by_side(evidence.threads, |side| {
+            let ground = Ground::start(side, evidence.grid, evidence.threads);
+            find_labels_in(evidence, division, Sketch::new(side, evidence, ground))
+        }),
     }
 }

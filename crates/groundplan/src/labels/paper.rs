@@ -1,31 +1,31 @@
 //! II-E: Algorithm 1 and Fig. 8 as printed.
 
 use super::outline;
-use super::{Evidence, JunctionKind, Label};
+use super::{Division, Evidence, JunctionKind, Label};
 use crate::grid::{State, tidy};
 use crate::subdivision::distance;
 
 /// Nodes of free faces with their neighbours over connected links.
-fn nodes(evidence: &Evidence) -> Vec<Vec<(u32, u32)>> {
-    let states = &evidence.occupancy.states;
+fn nodes(division: &Division) -> Vec<Vec<(u32, u32)>> {
+    let states = &division.occupancy.states;
     let free = |face: u32| states[face as usize] == State::Free;
-    let mut lists = evidence.adjacency.neighbours(evidence.subdivision.faces());
+    let mut lists = division.adjacency.neighbours(division.subdivision.faces());
     for (face, list) in lists.iter_mut().enumerate() {
         list.retain(|(other, _)| free(face as u32) && free(*other));
     }
     lists
 }
 
-pub fn find(evidence: &Evidence) -> Vec<Label> {
-    let nodes = nodes(evidence);
-    let mut labels = corridors(evidence, &nodes);
-    labels.extend(junctions(evidence, &nodes));
+pub fn find(evidence: &Evidence, division: &Division) -> Vec<Label> {
+    let nodes = nodes(division);
+    let mut labels = corridors(evidence, division, &nodes);
+    labels.extend(junctions(division, &nodes));
     labels
 }
 
 /// Algorithm 1: a node is a junction if no two of its neighbours share any neighbour but itself; T with three
 /// neighbours, X with four.
-fn junctions(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
+fn junctions(division: &Division, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
     let shares = |i: u32, l: u32, k: u32| {
         nodes[l as usize].iter().any(|(n, _)| *n != i && nodes[k as usize].iter().any(|(m, _)| m == n))
     };
@@ -44,8 +44,8 @@ fn junctions(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
             found.push(Label::Junction {
                 kind,
                 faces: vec![i as u32],
-                polygon: outline::polygon(evidence.subdivision, &[i as u32]),
-                at: evidence.subdivision.centres[i],
+                polygon: outline::polygon(division.subdivision, &[i as u32]),
+                at: division.subdivision.centres[i],
                 corridors: Vec::new(),
             });
         }
@@ -54,10 +54,10 @@ fn junctions(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
 }
 
 /// Fig. 8c: cogent on both long sides, connected at both ends; those that follow one another are one corridor.
-fn corridors(evidence: &Evidence, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
+fn corridors(evidence: &Evidence, division: &Division, nodes: &[Vec<(u32, u32)>]) -> Vec<Label> {
     // The direction of a corridor's face, when it is one: its two open edges lie on lines of one direction.
-    let subdivision = evidence.subdivision;
-    let edge_of = |link: u32| evidence.adjacency.edges[link as usize] as usize;
+    let subdivision = division.subdivision;
+    let edge_of = |link: u32| division.adjacency.edges[link as usize] as usize;
     let matches = |face: usize| {
         let [(_, one), (_, two)] = nodes[face][..] else {
             return None;

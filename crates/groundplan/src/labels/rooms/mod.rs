@@ -19,7 +19,7 @@ mod runs;
 
 use super::near::Near;
 use super::places::Squares;
-use super::{Evidence, Label, Purpose, outline};
+use super::{Division, Evidence, Label, Purpose, outline};
 use crate::grid::{Grid, State, tidy};
 use crate::subdivision::distance;
 use cells::Rules;
@@ -27,7 +27,7 @@ use clearance::Clearance;
 pub use corridors::Corridor;
 use fill::fill_runs;
 use fine::Fine;
-use gaps::Bar;
+pub use gaps::Bar;
 pub use raster::Raster;
 use runs::Runs;
 use std::collections::BTreeMap;
@@ -149,8 +149,10 @@ impl Space {
 
 /// Regions, then the doors between them; `first` is the id of the first of these labels. What runs across one of the
 /// corridors is no door.
+#[expect(clippy::too_many_arguments, reason = "what the labels before are found from, and what they are")]
 pub fn find(
     evidence: &Evidence,
+    division: &Division,
     space: &Space,
     mut bars: Vec<Bar>,
     first: usize,
@@ -179,7 +181,7 @@ pub fn find(
     }
     let doorways = doorways(raster, &numbers, cells.openings);
     let fine = Fine::new(evidence.grid, raster, numbers, regions.len());
-    let faces = faces(evidence, &fine, regions.len());
+    let faces = faces(evidence, division, &fine, regions.len());
     let mut outlines = outlines::find(&fine, regions.len());
     let square = evidence.grid.frame.resolution.powi(2);
     let places: Vec<_> = regions.iter().map(|region| (region.place, region.pixels as f64)).collect();
@@ -384,10 +386,10 @@ fn doorways(raster: &Raster, numbers: &Runs, openings: Vec<[[f64; 2]; 2]>) -> Ve
 }
 
 /// The free faces whose centres lie in each region, by its number.
-fn faces(evidence: &Evidence, fine: &Fine, count: usize) -> Vec<Vec<u32>> {
+fn faces(evidence: &Evidence, division: &Division, fine: &Fine, count: usize) -> Vec<Vec<u32>> {
     let mut faces = vec![Vec::new(); count + 1];
-    for (face, &centre) in evidence.subdivision.centres.iter().enumerate() {
-        if evidence.occupancy.states[face] == State::Free {
+    for (face, &centre) in division.subdivision.centres.iter().enumerate() {
+        if division.occupancy.states[face] == State::Free {
             faces[fine.at(evidence.grid.frame.to_pixels(centre)) as usize].push(face as u32);
         }
     }

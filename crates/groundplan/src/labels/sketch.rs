@@ -1,0 +1,143 @@
+//! II-E before the map is divided into faces: corridors first, junctions where they meet, rows between them, and all
+//! that may be a door.
+
+use super::corridors::{self, Strip};
+use super::gates;
+use super::junctions::{self, Meeting};
+use super::racks::{self, Row};
+use super::rooms::{Bar, Space};
+use super::turned::Turned;
+use super::{Evidence, Ground};
+use crate::bands::{Side, map_each};
+
+/// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
+const ALONE: (f64, f64) = (2.0, 5.0);
+/// And one that is shut at both its ends, be it with a door, so many times: less is a room.
+const SHUT: f64 = 4.5;
+/// A corridor that meets one other goes on beyond it, on one side for so many times its width and so far, metres, or on
+/// both together for as many times and so far: or it is a niche at the other's side.
+const NICHE: (f64, f64) = (1.5, 2.5);
+const NICHES: (f64, f64) = (2.2, 4.0);
+
+/// What the map shows without its faces.
+pub struct Sketch {
+    pub views: Vec<Turned>,
+    pub plan: Plan,
+    /// The free space, if there is some, and all that may be a door in it.
+    pub free: Option<(Space, Vec<Bar>)>,
+}
+
+impl Sketch {
+    /// From the lines, and what was begun before there were any.
+    pub fn new<'s>(side: Side<'s, '_>, evidence: &'s Evidence, Ground { look, space }: Ground<'s, '_>) -> Self {
+        let free = side.start(move || {
+            space.get().map(|space| {
+                let bars = space.bars(evidence);
+                (space, bars)
+            })
+        });
+        let look = look.get();
+        let count = evidence.directions.angles.len();
+        // Each view shares its own work out among what threads are left.
+        let own = Evidence { threads: evidence.threads / count.max(1), ..*evidence };
+        let views = map_each(count, evidence.threads, |d| Turned::new(&own, &look, d));
+        let found = gates::without_bays(evidence, &look, &views, corridors::find(evidence, &views));
+        let mut plan = Plan::new(&views, found);
+        let gates = gates::find(evidence, &look, &views, &plan.strips, &plan.rows);
+        if !gates.is_empty() {
+            plan.strips.extend(gates);
+            plan = Plan::new(&views, plan.strips);
+        }
+        Self { views, plan, free: free.get() }
+    }
+}
+
+/// The ways, what they meet and where they end, and the rows between them.
+pub struct Plan {
+    pub strips: Vec<Strip>,
+    pub meetings: Vec<Meeting>,
+    /// Dead ends: the corridor, which end of it, and the place along.
+    pub ends: Vec<(usize, usize, f64)>,
+    /// Where each corridor begins and ends, along, with its junctions.
+    pub extents: Vec<[f64; 2]>,
+    pub rows: Vec<Row>,
+}
+
+impl Plan {
+    fn new(views: &[Turned], strips: Vec<Strip>) -> Self {
+        let (mut strips, meetings) = connected(views, strips);
+        // A corridor goes on to what it meets, and there it may be what another one meets.
+        let longer = extents(views, &strips, &meetings);
+        for (strip, along) in strips.iter_mut().zip(longer) {
+            strip.along = [strip.along[0].min(along[0]), strip.along[1].max(along[1])];
+        }
+        let (strips, meetings) = connected(views, strips);
+        let mut extents = extents(views, &strips, &meetings);
+        let ends = junctions::ends(views, &strips, &meetings);
+        for &(n, side, place) in &ends {
+            extents[n][side] = place;
+        }
+        let rows = racks::find(views, &strips, &extents);
+        Self { strips, meetings, ends, extents, rows }
+    }
+}
+
+/// A strip that leads nowhere is a niche: it goes, and what met it is judged again.
+fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeting>) {
+    loop {
+        let meetings = junctions::find(views, &strips);
+        let met = junctions::of_each(&meetings, strips.len());
+        let leads = |n: usize| {
+            let met = met[n].iter().map(|&m| &meetings[m]);
+            let is_niche = |meeting: &Meeting| {
+                let strip = &strips[n];
+                let at = views[strip.direction].place(meeting.at)[0];
+                let reach = meeting.reach[usize::from(meeting.corridors[0] != n)];
+                let beyond = strip.length() - reach;
+                let both = strip.length() - 2.0 * reach;
+                let arm = (at - reach - strip.along[0]).max(strip.along[1] - at - reach).min(beyond);
+                let goes_on = |metres: f64, (widths, least): (f64, f64)| metres >= least.max(widths * strip.width());
+                !goes_on(arm, NICHE) && !goes_on(both, NICHES)
+            };
+            match met.clone().count() {
+                0 | 1 if racks::is_within_row(&strips, n) => false,
+                0 if junctions::is_shut(views, &strips[n], 0) && junctions::is_shut(views, &strips[n], 1) => {
+                    strips[n].length() >= SHUT * strips[n].width()
+                }
+                0 => strips[n].length() >= ALONE.1.max(ALONE.0 * strips[n].width()),
+                1 => !met.clone().any(is_niche),
+                _ => true,
+            }
+        };
+        let stays: Vec<bool> = (0..strips.len()).map(leads).collect();
+        if stays.iter().all(|&s| s) {
+            return (strips, meetings);
+        }
+        let mut flags = stays.into_iter();
+        strips.retain(|_| flags.next().unwrap_or(false));
+    }
+}
+
+/// Where each corridor begins and ends, along: its walled part, and the middle of the junction at each end that it has
+/// no arm beyond.
+fn extents(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<[f64; 2]> {
+    let mut extents: Vec<[f64; 2]> = strips.iter().map(|strip| strip.along).collect();
+    let all = || {
+        let each = |m: &Meeting, p: usize| (m.corridors[p], m.reach[p.min(1)], m.at);
+        meetings.iter().flat_map(move |m| (0..m.corridors.len()).map(move |p| each(m, p)))
+    };
+    let place = |n: usize, at: [f64; 2]| views[strips[n].direction].place(at)[0];
+    for (n, reach, at) in all() {
+        let (u, [low, high]) = (place(n, at), strips[n].along);
+        for (side, beyond) in [(0, u - low), (1, high - u)] {
+            if !junctions::goes_on(&views[strips[n].direction], &strips[n], side, beyond - reach) {
+                extents[n][side] = u;
+            }
+        }
+    }
+    for (n, _, at) in all() {
+        let u = place(n, at);
+        extents[n] = [extents[n][0].min(u), extents[n][1].max(u)];
+    }
+    extents
+}
