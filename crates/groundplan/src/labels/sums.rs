@@ -6,6 +6,7 @@
 
 use crate::bands::map_bands;
 use std::cell::Cell;
+use std::ops::Range;
 
 /// What is asked of a cell.
 #[derive(Clone, Copy)]
@@ -27,8 +28,6 @@ const ONES: u64 = 0x0101_0101_0101_0101;
 const LOW: u64 = 0x0f0f_0f0f_0f0f_0f0f;
 /// Of a square that is all alike: its cells' byte, and the bit that says so.
 const ALIKE: u32 = 1 << 31;
-/// So many rows at most are added up at once, in 16 bits: a cell has nine samples.
-const ROWS: usize = 4096;
 
 /// The cells of a view.
 pub enum Cells {
@@ -61,7 +60,7 @@ impl Default for Cells {
 impl Cells {
     /// From what makes the cells of any row, a byte each.
     pub fn new(width: usize, height: usize, threads: usize, make: impl Fn(usize, &mut [u8]) + Sync) -> Self {
-        let rows = |band: std::ops::Range<usize>| {
+        let rows = |band: Range<usize>| {
             let mut cells = vec![0u8; band.len() * width];
             cells.chunks_mut(width).zip(band).for_each(|(row, n)| make(n, row));
             cells
@@ -116,7 +115,9 @@ impl Rows<'_> {
             Self::Squared { width, bands, what, rows, last } => {
                 let n = column / SIDE;
                 if last.get().0 != n {
-                    last.set((n, add_up(bands, *width, n, *what, *rows)));
+                    let mut sums = [[0; SIDE]];
+                    add_up(bands, *width, n..n + 1, *what, *rows, &mut sums);
+                    last.set((n, sums[0]));
                 }
                 last.get().1[column % SIDE]
             }
@@ -124,7 +125,7 @@ impl Rows<'_> {
     }
 
     /// The last of some columns whose sum is as large as that.
-    pub fn last(&self, columns: std::ops::Range<usize>, least: u32) -> Option<usize> {
+    pub fn last(&self, columns: Range<usize>, least: u32) -> Option<usize> {
         match self {
             Self::Summed { below, above } => {
                 let sums = above[columns.clone()].iter().zip(&below[columns.clone()]);
@@ -135,60 +136,77 @@ impl Rows<'_> {
     }
 
     /// The sums over them of some columns.
-    pub fn over(&self, columns: std::ops::Range<usize>) -> Vec<u32> {
+    pub fn over(&self, columns: Range<usize>) -> Vec<u32> {
         match self {
             Self::Summed { below, above } => {
                 above[columns.clone()].iter().zip(&below[columns]).map(|(above, below)| above - below).collect()
             }
-            Self::Squared { .. } => columns.map(|column| self.at(column)).collect(),
+            Self::Squared { width, bands, what, rows, .. } => {
+                let squares = columns.start / SIDE..columns.end.div_ceil(SIDE);
+                let before = columns.start - squares.start * SIDE;
+                let mut sums = vec![[0; SIDE]; squares.len()];
+                add_up(bands, *width, squares, *what, *rows, &mut sums);
+                let mut sums = sums.into_flattened();
+                sums.truncate(before + columns.len());
+                sums.drain(..before);
+                sums
+            }
         }
     }
 }
 
-/// The sums over rows of the columns of a square.
-fn add_up(bands: &[Band], width: usize, column: usize, what: What, [from, to]: [usize; 2]) -> [u32; SIDE] {
-    // Every second byte, so that there is room for what they add up to.
-    const EVERY_SECOND: u64 = 0x00ff_00ff_00ff_00ff;
-    let mut found = [0; SIDE];
-    for start in (from..to).step_by(ROWS) {
-        let add = |[even, odd]: [u64; 2], part| [even + (part & EVERY_SECOND), odd + (part >> 8 & EVERY_SECOND)];
-        let sums = squares(bands, width, column, what, [start, to.min(start + ROWS)]).fold([0; 2], add);
-        for (n, to) in found.iter_mut().enumerate() {
-            *to += (sums[n % 2] >> (n / 2 * 16) & 0xffff) as u32;
-        }
-    }
-    found
-}
+/// Of so many squares above each other the sums still fit in a byte.
+const FEW: usize = 3;
 
-/// The sums over rows, square by square, of the columns of one, a byte each.
-fn squares(
+/// Adds to `sums`, a number for each column, what rows from one to before another hold in the columns of some squares
+/// side by side.
+fn add_up(
     bands: &[Band],
     width: usize,
-    column: usize,
+    columns: Range<usize>,
     what: What,
     [from, to]: [usize; 2],
-) -> impl Iterator<Item = u64> + '_ {
+    sums: &mut [[u32; SIDE]],
+) {
     let across = width.div_ceil(SIDE);
-    (from / SIDE..to.div_ceil(SIDE)).map(move |n| {
-        let band = &bands[n / BAND];
-        let place = band.places[n % BAND * across + column];
-        let (first, last) = (from.saturating_sub(n * SIDE), (to - n * SIDE).min(SIDE));
-        if place & ALIKE != 0 {
-            return u64::from(of_cell(place as u8, what)) * (last - first) as u64 * ONES;
+    let squares = from / SIDE..to.div_ceil(SIDE);
+    for start in squares.clone().step_by(FEW) {
+        let few = start..squares.end.min(start + FEW);
+        let few: [Option<(&Band, usize, [usize; 2])>; FEW] = std::array::from_fn(|n| {
+            let n = few.start + n;
+            let rows = [from.saturating_sub(n * SIDE), to.saturating_sub(n * SIDE).min(SIDE)];
+            few.contains(&n).then(|| (&bands[n / BAND], n % BAND * across, rows))
+        });
+        for (column, sums) in columns.clone().zip(&mut *sums) {
+            let of = |(band, first, rows): &(&Band, usize, [usize; 2])| band.add_up(first + column, what, *rows);
+            let bytes: u64 = few.iter().flatten().map(of).sum();
+            sums.iter_mut().zip(bytes.to_le_bytes()).for_each(|(sum, byte)| *sum += u32::from(byte));
         }
-        let square = &band.squares[place as usize];
-        match what {
-            What::Blocked => square.cells[first..last].iter().map(|row| row & LOW).sum(),
-            What::Occupied => square.cells[first..last].iter().map(|row| row >> 4 & LOW).sum(),
-            What::Barred => square.barred[first..last].iter().map(|row| spread(*row)).sum(),
-        }
-    })
+    }
 }
 
 /// Rows of squares in a band.
 const BAND: usize = crate::bands::BAND_ROWS / SIDE;
 
 impl Band {
+    /// The sums over some rows of a square's columns, a byte each.
+    fn add_up(&self, square: usize, what: What, [from, to]: [usize; 2]) -> u64 {
+        let place = self.places[square];
+        if place & ALIKE != 0 {
+            return u64::from(of_cell(place as u8, what)) * (to - from) as u64 * ONES;
+        }
+        let Square { cells, barred } = &self.squares[place as usize];
+        // Of most squares all rows are asked: of a number that is known they are added up at once.
+        match (what, to - from == SIDE) {
+            (What::Blocked, true) => cells.iter().map(|row| row & LOW).sum(),
+            (What::Blocked, false) => cells[from..to].iter().map(|row| row & LOW).sum(),
+            (What::Occupied, true) => cells.iter().map(|row| row >> 4 & LOW).sum(),
+            (What::Occupied, false) => cells[from..to].iter().map(|row| row >> 4 & LOW).sum(),
+            (What::Barred, true) => barred.iter().map(|row| spread(*row)).sum(),
+            (What::Barred, false) => barred[from..to].iter().map(|row| spread(*row)).sum(),
+        }
+    }
+
     fn new(width: usize, cells: &[u8]) -> Self {
         let across = width.div_ceil(SIDE);
         let mut made = Self { places: Vec::with_capacity(across * BAND), squares: Vec::new() };
