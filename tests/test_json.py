@@ -12,6 +12,7 @@ import pytest
 import zoo
 from zoo import ZOO
 
+import groundplan
 from groundplan import FormatError, Survey
 from groundplan._tree import READING
 
@@ -147,3 +148,21 @@ def test_every_key_is_described() -> None:
             row = page.partition(f"\n| `{label['kind']}` |")[2].partition("\n")[0]
             assert {key for key in label if key != "kind" and f"`{key}`" not in row} == set(), label["kind"]
     assert all(f"`{name}`" in page for name in READING)
+
+
+def test_a_survey_is_written_without_making_all_labels_at_once(tmp_path: Path) -> None:
+    survey = groundplan.survey(ZOO["turned_warehouse"](), resolution=zoo.RESOLUTION)
+    survey.write(tmp_path / "survey.json")
+    assert "labels" not in survey.__dict__
+    text = survey.to_json()
+    assert survey.labels and survey.labels is survey.labels
+    assert survey.labels == json.loads(text)["labels"]
+    assert text == survey.to_json() == (tmp_path / "survey.json").read_text(encoding="utf-8")
+
+
+def test_parts_of_many_records_are_written_as_one_list(monkeypatch: pytest.MonkeyPatch) -> None:
+    survey = zoo.surveyed("turned_warehouse")
+    text = survey.to_json()
+    monkeypatch.setattr("groundplan._tree.RECORDS", 7)
+    assert survey.to_json() == text
+    assert json.loads(text) == json.loads(json.dumps(survey.to_dict()))

@@ -4,6 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "Labels",
     "Locator",
     "Ways",
     "find_adjacency",
@@ -37,6 +38,11 @@ _Layout: TypeAlias = tuple[
 _Record: TypeAlias = dict[str, Any]
 _Frame: TypeAlias = tuple[int, int, float, tuple[float, float, float]]
 _Points: TypeAlias = npt.NDArray[np.float64]
+
+@final
+class Labels:
+    def __len__(self) -> int: ...
+    def some(self, start: int, to: int) -> list[_Record]: ...
 
 @final
 class Locator:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from dataclasses import fields
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +29,9 @@ from groundplan.maps import MapWarning
 if TYPE_CHECKING:
     from groundplan.survey import Survey
 
+#: So many records are written at a time.
+RECORDS = 4096
+
 #: What a label of a kind must have besides its kind.
 NEEDED = {
     "corridor": ("polygon", "axis", "width"),
@@ -45,14 +49,50 @@ READING = (
 )
 
 
-def to_tree(survey: Survey) -> dict[str, Any]:
-    """The survey as the format has it: plain lists and numbers."""
-    cut, dual = survey.subdivision, survey.adjacency
-    faces = [ragged(part, cut.face_offsets) for part in (cut.face_vertices, cut.face_edges)]
-    lines = [None if line < 0 else line for line in cut.edge_lines.tolist()]
-    sides = [[None if f < 0 else f for f in pair] for pair in cut.edge_faces.tolist()]
-    kinds = ["freestanding" if free else "separating" for free in survey.walls.freestanding.tolist()]
+@dataclass(frozen=True)
+class Table:
+    """Records of a survey that are made some at a time: how many there are, and some of them as plain values."""
+
+    count: int
+    some: Callable[[slice], list[Any]]
+
+
+def parts(survey: Survey) -> dict[str, Any]:
+    """The parts of a survey as the format has them, plain or as a `Table`, in the order in which they are written."""
+    cut, measured, walls, dual = survey.subdivision, survey.occupancy, survey.walls, survey.adjacency
     source = {} if survey.source is None else {"source": {"file": survey.source, "reading": survey.reading}}
+
+    def edges(some: slice) -> list[Any]:
+        return rows(
+            vertices=cut.edge_vertices[some],
+            line=[None if line < 0 else line for line in cut.edge_lines[some].tolist()],
+            faces=[[None if f < 0 else f for f in pair] for pair in cut.edge_faces[some].tolist()],
+            occupancy=measured.edges[some],
+            runs=ragged(measured.runs, measured.run_offsets, some),
+            disparity=walls.disparity[some],
+            cogent=walls.cogent[some],
+        )
+
+    def faces(some: slice) -> list[Any]:
+        return rows(
+            vertices=ragged(cut.face_vertices, cut.face_offsets, some),
+            edges=ragged(cut.face_edges, cut.face_offsets, some),
+            centre=cut.centres[some],
+            area=cut.areas[some],
+            occupancy=measured.faces[some],
+            unknown=measured.unknown[some],
+            free=measured.free[some],
+            pixels=measured.pixels[some],
+            state=[STATES[state] for state in measured.states[some].tolist()],
+        )
+
+    def links(some: slice) -> list[Any]:
+        return rows(faces=dual.faces[some], edge=dual.edges[some], connected=dual.connected[some])
+
+    def traced(some: slice) -> list[Any]:
+        kinds = ["freestanding" if free else "separating" for free in walls.freestanding[some].tolist()]
+        return rows(points=walls.points.reshape(-1, 2, 2)[some], line=walls.lines[some], kind=kinds)
+
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -66,30 +106,12 @@ def to_tree(survey: Survey) -> dict[str, Any]:
             amplitude=survey.lines.amplitudes,
             width=survey.lines.widths,
         ),
-        "vertices": cut.vertices.tolist(),
-        "edges": rows(
-            vertices=cut.edge_vertices,
-            line=lines,
-            faces=sides,
-            occupancy=survey.occupancy.edges,
-            runs=ragged(survey.occupancy.runs, survey.occupancy.run_offsets),
-            disparity=survey.walls.disparity,
-            cogent=survey.walls.cogent,
-        ),
-        "faces": rows(
-            vertices=faces[0],
-            edges=faces[1],
-            centre=cut.centres,
-            area=cut.areas,
-            occupancy=survey.occupancy.faces,
-            unknown=survey.occupancy.unknown,
-            free=survey.occupancy.free,
-            pixels=survey.occupancy.pixels,
-            state=[STATES[state] for state in survey.occupancy.states.tolist()],
-        ),
-        "links": rows(faces=dual.faces, edge=dual.edges, connected=dual.connected),
-        "walls": rows(points=survey.walls.points.reshape(-1, 2, 2), line=survey.walls.lines, kind=kinds),
-        "labels": survey.labels,
+        "vertices": Table(len(cut.vertices), lambda some: cut.vertices[some].tolist()),
+        "edges": Table(len(cut.edge_lines), edges),
+        "faces": Table(len(cut.areas), faces),
+        "links": Table(len(dual), links),
+        "walls": Table(len(walls), traced),
+        "labels": survey._some_labels,
         "patterns": survey.patterns,
         "warnings": [{"code": w.code, "message": w.message} for w in survey.warnings],
         "evidence": {
@@ -102,6 +124,27 @@ def to_tree(survey: Survey) -> dict[str, Any]:
             ],
         },
     }
+
+
+def to_tree(survey: Survey) -> dict[str, Any]:
+    """The survey as the format has it: plain lists and numbers."""
+    whole = slice(None)
+    return {key: part.some(whole) if isinstance(part, Table) else part for key, part in parts(survey).items()}
+
+
+def written(survey: Survey) -> Iterator[str]:
+    """The survey as JSON, piece by piece: of a large one no more than a few thousand records are in memory at once."""
+    before = "{\n"
+    for key, part in parts(survey).items():
+        yield f"{before}{dump(key)}: "
+        before = ",\n"
+        if not isinstance(part, Table):
+            yield dump(part)
+            continue
+        for first in range(0, part.count, RECORDS):
+            yield ("," if first else "[") + dump(part.some(slice(first, first + RECORDS)))[1:-1]
+        yield "]" if part.count else "[]"
+    yield "\n}\n"
 
 
 def from_tree(tree: dict[str, Any]) -> dict[str, Any]:
@@ -188,10 +231,12 @@ def rows(**columns: Any) -> list[dict[str, Any]]:
     return [dict(zip(columns, values, strict=True)) for values in zip(*lists, strict=True)]
 
 
-def ragged(values: npt.NDArray[Any], offsets: npt.NDArray[Any]) -> list[Any]:
-    """Lists of different lengths from their values and offsets."""
-    flat, ends = values.tolist(), offsets.tolist()
-    return [flat[start:end] for start, end in pairwise(ends)]
+def ragged(values: npt.NDArray[Any], offsets: npt.NDArray[Any], some: slice) -> list[Any]:
+    """Some of the lists of different lengths that values and their offsets are."""
+    first, last, _ = some.indices(len(offsets) - 1)
+    ends = offsets[first : last + 1].tolist()
+    flat = values[ends[0] : ends[-1]].tolist()
+    return [flat[start - ends[0] : end - ends[0]] for start, end in pairwise(ends)]
 
 
 def column(records: list[dict[str, Any]], name: str, kind: npt.DTypeLike) -> npt.NDArray[Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from groundplan import _core
 from groundplan._errors import FormatError, MapError, ParameterError
-from groundplan._files import unreadable, write_text
+from groundplan._files import unreadable, whole
 from groundplan._format import check_format
 from groundplan._queries import Place, Queries, Route
 from groundplan._results import (
@@ -32,7 +32,7 @@ from groundplan._results import (
     Subdivision,
     Walls,
 )
-from groundplan._tree import dump, from_tree, to_tree
+from groundplan._tree import RECORDS, Table, from_tree, to_tree, written
 from groundplan.maps import Map, MapWarning, from_array
 from groundplan.maps.map_server import shown
 from groundplan.parameters import named, resolve
@@ -89,7 +89,7 @@ class Survey(Stage):
         return (
             f"Survey({info.image!r}, {info.width} x {info.height} pixels of {info.resolution:g} m: "
             f"{len(self.directions)} directions, {len(self.lines)} lines, {len(cut.areas)} faces, "
-            f"{len(self.walls)} walls, {len(self.labels)} labels, {len(self.warnings)} warnings)"
+            f"{len(self.walls)} walls, {self._some_labels.count} labels, {len(self.warnings)} warnings)"
         )
 
     def problems(self) -> list[str]:
@@ -116,6 +116,34 @@ class Survey(Stage):
     def __getstate__(self) -> dict[str, Any]:
         """What is copied and pickled: the fields, and neither index nor map."""
         return {f.name: getattr(self, f.name) for f in fields(self)}
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """What takes much memory and is not always asked for is made when it is."""
+            later = self.__dict__.get("_later", {})
+            if name not in later:
+                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+            return self.__dict__.setdefault(name, later[name].some(slice(None)))
+
+    @property
+    def _some_labels(self) -> Table:
+        """The labels, of which some can be had without making all."""
+        labels: list[Label] | None = self.__dict__.get("labels")
+        return self.__dict__["_later"]["labels"] if labels is None else Table(len(labels), labels.__getitem__)
+
+    def _each_label(self) -> Iterator[Label]:
+        """The labels one after another, none of them kept."""
+        found = self._some_labels
+        for first in range(0, found.count, RECORDS):
+            yield from found.some(slice(first, first + RECORDS))
+
+    def _with(self, **changes: Any) -> Survey:
+        """As `dataclasses.replace` has it, but what is not made yet stays so."""
+        other = object.__new__(type(self))
+        other.__dict__.update(self.__dict__ | changes)
+        other.__dict__.pop("_index", None)
+        return other
 
     @property
     def _queries(self) -> Queries:
@@ -242,12 +270,17 @@ class Survey(Stage):
 
     def to_json(self) -> str:
         """The survey as JSON, a line for each part; the same survey gives the same bytes."""
-        parts = (f"{json.dumps(key)}: {dump(value)}" for key, value in self.to_dict().items())
-        return "{\n" + ",\n".join(parts) + "\n}\n"
+        return "".join(written(self))
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the JSON, whole or not at all."""
-        write_text(path, self.to_json())
+        with whole(path) as beside:
+            self._write_to(beside)
+
+    def _write_to(self, path: Path) -> None:
+        """Write the JSON, of a large survey a little at a time."""
+        with path.open("w", encoding="utf-8") as file:
+            file.writelines(written(self))
 
     @classmethod
     def from_json(cls, text: str | bytes) -> Survey:
@@ -404,13 +437,16 @@ def surveyed(
         map=MapInfo(map.image, map.width, map.height, map.resolution, map.origin),
         parameters=resolve(parameters),
         radiograms=[made(Radiogram, arrays) for arrays in found["radiograms"]],
-        labels=found["labels"],
+        labels=[],
         patterns=found["patterns"],
         warnings=[*map.warnings, *(MapWarning(code, message) for code, message in found["warnings"])],
         **{name: made(kind, found[name]) for name, kind in stages.items()},
     )
     # For its routes and its updates, and no part of what it is.
     survey.__dict__.update(_map=map, _own=own, _gradients=found["gradients"])
+    labels: _core.Labels = found["labels"]
+    survey.__dict__["_later"] = {"labels": Table(len(labels), lambda some: labels.some(*some.indices(len(labels))[:2]))}
+    del survey.__dict__["labels"]
     return survey
 
 

@@ -486,62 +486,60 @@ pub fn from_adjacency(py: Python<'_>, made: Adjacency) -> PyResult<Bound<'_, PyD
     Ok(Named::new(py).pairs("faces", made.faces)?.list("edges", made.edges)?.list("connected", made.connected)?.done())
 }
 
-/// Labels are few: each is a dictionary of plain values, as in the survey's JSON.
-pub fn from_labels<'py>(py: Python<'py>, made: &[Label], confidence: &[f64]) -> PyResult<Vec<Bound<'py, PyDict>>> {
-    let convert = |(label, &confidence): (&Label, &f64)| {
-        let named = Named::new(py);
-        let named = match label {
-            Label::Corridor { faces, polygon, axis, width, name } => named
-                .with("kind", "corridor")?
-                .with("faces", faces)?
-                .with("polygon", polygon)?
-                .with("axis", axis)?
-                .with("width", *width)?
-                .with("name", name)?,
-            Label::Junction { kind, faces, polygon, at, corridors } => named
-                .with("kind", "junction")?
-                .with("type", kind.name())?
-                .with("faces", faces)?
-                .with("polygon", polygon)?
-                .with("at", at)?
-                .with("corridors", corridors)?,
-            Label::Region { purpose, faces, polygon, holes, at, area, name } => named
-                .with("kind", "region")?
-                .with("use", purpose.name())?
-                .with("faces", faces)?
-                .with("polygon", polygon)?
-                .with("holes", holes)?
-                .with("at", at)?
-                .with("area", *area)?
-                .with("name", name)?,
-            Label::Door { at, axis, width, between } => named
-                .with("kind", "door")?
-                .with("at", at)?
-                .with("axis", axis)?
-                .with("width", *width)?
-                .with("between", between)?,
-            Label::Rack { faces, polygon, axis, width, pitch, phase, name } => named
-                .with("kind", "rack")?
-                .with("faces", faces)?
-                .with("polygon", polygon)?
-                .with("axis", axis)?
-                .with("width", *width)?
-                .with("pitch", *pitch)?
-                .with("phase", *phase)?
-                .with("name", name)?,
-            Label::Pillar { at, width, pattern, name } => named
-                .with("kind", "pillar")?
-                .with("at", at)?
-                .with("width", *width)?
-                .with("pattern", *pattern)?
-                .with("name", name)?,
-        };
-        Ok(named.with("confidence", confidence)?.done())
-    };
-    made.iter().zip(confidence).map(convert).collect()
+fn kind(label: &Label) -> &'static str {
+    match label {
+        Label::Corridor { .. } => "corridor",
+        Label::Junction { .. } => "junction",
+        Label::Region { .. } => "region",
+        Label::Door { .. } => "door",
+        Label::Rack { .. } => "rack",
+        Label::Pillar { .. } => "pillar",
+    }
 }
 
-/// Patterns are few, as labels are.
+/// A label is a dictionary of plain values, as in the survey's JSON.
+pub fn from_label<'py>(py: Python<'py>, label: &Label, confidence: f64) -> PyResult<Bound<'py, PyDict>> {
+    let named = Named::new(py).with("kind", kind(label))?;
+    let named = match label {
+        Label::Corridor { faces, polygon, axis, width, name } => named
+            .with("faces", faces)?
+            .with("polygon", polygon)?
+            .with("axis", axis)?
+            .with("width", *width)?
+            .with("name", name)?,
+        Label::Junction { kind, faces, polygon, at, corridors } => named
+            .with("type", kind.name())?
+            .with("faces", faces)?
+            .with("polygon", polygon)?
+            .with("at", at)?
+            .with("corridors", corridors)?,
+        Label::Region { purpose, faces, polygon, holes, at, area, name } => named
+            .with("use", purpose.name())?
+            .with("faces", faces)?
+            .with("polygon", polygon)?
+            .with("holes", holes)?
+            .with("at", at)?
+            .with("area", *area)?
+            .with("name", name)?,
+        Label::Door { at, axis, width, between } => {
+            named.with("at", at)?.with("axis", axis)?.with("width", *width)?.with("between", between)?
+        }
+        Label::Rack { faces, polygon, axis, width, pitch, phase, name } => named
+            .with("faces", faces)?
+            .with("polygon", polygon)?
+            .with("axis", axis)?
+            .with("width", *width)?
+            .with("pitch", *pitch)?
+            .with("phase", *phase)?
+            .with("name", name)?,
+        Label::Pillar { at, width, pattern, name } => {
+            named.with("at", at)?.with("width", *width)?.with("pattern", *pattern)?.with("name", name)?
+        }
+    };
+    Ok(named.with("confidence", confidence)?.done())
+}
+
+/// Patterns are few.
 pub fn from_patterns<'py>(py: Python<'py>, made: &[Pattern]) -> PyResult<Vec<Bound<'py, PyDict>>> {
     let convert = |pattern: &Pattern| {
         Ok(Named::new(py)

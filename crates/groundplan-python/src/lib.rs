@@ -1,6 +1,7 @@
 //! The Python module `groundplan._core`: arrays and parameters in, arrays out; no logic.
 
 mod convert;
+mod labels;
 #[allow(clippy::needless_pass_by_value)]
 mod queries;
 
@@ -10,6 +11,8 @@ mod queries;
 #[pyo3::pymodule]
 mod _core {
     use crate::convert::{self, Layout, Named};
+    #[pymodule_export]
+    use crate::labels::Labels;
     #[pymodule_export]
     use crate::queries::{Locator, Ways};
     use groundplan::{TABLE, adjacency, arrangement, directions, gradients, labels, lines, occupancy, radiograms};
@@ -59,7 +62,7 @@ mod _core {
             .with("occupancy", convert::from_occupancy(py, made.occupancy)?)?
             .with("walls", convert::from_walls(py, made.walls)?)?
             .with("adjacency", convert::from_adjacency(py, made.adjacency)?)?
-            .with("labels", convert::from_labels(py, &made.labels, &made.confidence)?)?
+            .with("labels", Py::new(py, Labels::new(made.labels, made.confidence))?)?
             .with("patterns", convert::from_patterns(py, &made.patterns)?)?
             .with("warnings", made.warnings.into_iter().map(|w| (w.code, w.message)).collect::<Vec<_>>())?
             .done())
@@ -278,6 +281,6 @@ mod _core {
             let confidence = labels::find_confidence(&evidence, &made);
             (made, confidence)
         })?;
-        convert::from_labels(py, &made, &confidence)
+        Labels::new(made, confidence).all(py)
     }
 }

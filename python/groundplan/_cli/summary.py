@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from groundplan._cli import terminal
@@ -69,25 +70,33 @@ def _walls(survey: Survey) -> Rows:
 
 
 def _labels(survey: Survey) -> Rows:
-    kinds = Counter(label["kind"] for label in survey.labels)
-    rows = [("corridors", _corridors(survey)), ("junctions", _junctions(survey))]
+    kinds: Counter[str] = Counter()
+    types: Counter[str] = Counter()
+    corridors: list[tuple[float, float]] = []
+    for label in survey._each_label():
+        kinds[label["kind"]] += 1
+        if label["kind"] == "corridor":
+            axis = label["axis"]
+            corridors.append((sum(math.dist(a, b) for a, b in pairwise(axis)), label["width"]))
+        elif label["kind"] == "junction":
+            types[label["type"]] += 1
+    rows = [("corridors", _corridors(corridors)), ("junctions", _junctions(types))]
     others = [kind for kind in kinds if kind not in ("corridor", "junction")]
     return rows + [(f"{kind}s", str(kinds[kind])) for kind in others]
 
 
-def _corridors(survey: Survey) -> str:
-    corridors = survey.of_kind("corridor")
+def _corridors(corridors: list[tuple[float, float]]) -> str:
+    """Of the lengths and widths of all."""
     if not corridors:
         return "none"
-    length = sum(math.dist(a, b) for c in corridors for a, b in zip(c["axis"], c["axis"][1:], strict=False))
-    widths = sorted(f"{corridor['width']:.1f}" for corridor in corridors)
+    length = sum(length for length, _ in corridors)
+    widths = sorted(f"{width:.1f}" for _, width in corridors)
     low, high = min(widths, key=float), max(widths, key=float)
     wide = f"{low} m" if low == high else f"{low} to {high} m"
     return f"{len(corridors)}, {length:.1f} m in all, {wide} wide"
 
 
-def _junctions(survey: Survey) -> str:
-    types = Counter(junction["type"] for junction in survey.of_kind("junction"))
+def _junctions(types: Counter[str]) -> str:
     if not types:
         return "none"
     said = []

@@ -165,7 +165,7 @@ def run(arguments: argparse.Namespace) -> None:
             )
         named = dataclasses.replace(found.map, image=printable(arguments.name or found.map.image))
         out = directory(arguments)
-        found = dataclasses.replace(found, map=named, source=seen_from(out or Path(), arguments.map), reading=given)
+        found = found._with(map=named, source=seen_from(out or Path(), arguments.map), reading=given)
         picture = None if arguments.no_picture else "survey.png"
         written = [] if out is None else write(out, found, map, status, picture, arguments.figures)
         refused: export.Refused = {}
@@ -258,7 +258,7 @@ def write(
 
     # The survey is put in place after its picture: where the disk is full there is neither.
     with whole(out / "survey.json") as beside:
-        beside.write_text(survey.to_json(), encoding="utf-8")
+        survey._write_to(beside)
         if picture:
             from groundplan.figures import draw_survey
 
