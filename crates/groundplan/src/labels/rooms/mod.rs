@@ -5,6 +5,7 @@
 //! is about as wide as the space on one of its sides, the most open first ([`cells`]). A cut that stays is narrower
 //! than what lies on both its sides: a door.
 
+mod blocks;
 mod cells;
 mod clearance;
 mod corridors;

@@ -1,5 +1,6 @@
 //! Narrows: where the free space is tighter than on both sides, whether or not a line leads there.
 
+use super::blocks::Blocks;
 use super::clearance::Clearance;
 use super::gaps::Bar;
 use super::raster::Raster;
@@ -11,6 +12,8 @@ use std::ops::Range;
 const NARROW: f64 = 0.85;
 /// Narrower than this, metres, is a crack, wider is no opening.
 const WIDTHS: (f64, f64) = (0.3, 4.0);
+/// Basins are of blocks about so large, metres: what a narrow parts is larger.
+const BLOCK: f64 = 0.1;
 /// The pixels that a narrow lies between are within so many pixels of its clearance,
 const TOUCH: f64 = 1.6;
 /// and so far from side by side, as the cosine of the angle between them.
@@ -25,7 +28,8 @@ const AROUND: f64 = 8.0;
 /// Straight closures of all narrows, in the order of the places that they part; on a large raster, square by square.
 pub fn find(raster: &Raster, clearance: &Clearance, threads: usize) -> Vec<Bar> {
     if let Some(clearance) = clearance.whole().filter(|all| all.len() <= AT_ONCE) {
-        return Window { clearance, width: raster.width }.narrows(raster).into_iter().map(|(_, bar)| bar).collect();
+        let found = Window::new(raster, clearance, raster.width).narrows();
+        return found.into_iter().map(|(_, bar)| bar).collect();
     }
     let around = raster.pixels(AROUND).ceil() as usize;
     let parts = |size: usize| (0..size).step_by(SQUARE).map(move |from| from..(from + SQUARE).min(size));
@@ -38,7 +42,7 @@ pub fn find(raster: &Raster, clearance: &Clearance, threads: usize) -> Vec<Bar> 
         let [left, low] = [0, 1].map(|axis| window[axis].start);
         let width = window[0].len();
         let clearance = clearance.within(raster, window);
-        let found = Window { clearance: &clearance, width }.narrows(raster).into_iter();
+        let found = Window::new(raster, &clearance, width).narrows().into_iter();
         let own = found
             .filter(|(pixel, _)| columns.contains(&(pixel % width + left)) && rows.contains(&(pixel / width + low)));
         own.map(|(_, Bar { ends })| Bar { ends: ends.map(|[x, y]| [x + left as f64, y + low as f64]) })
@@ -52,28 +56,36 @@ struct Window<'a> {
     /// Squared distance of each pixel to the nearest that is not free; 0 for these.
     clearance: &'a [u32],
     width: usize,
+    /// Squared clearances of narrows in pixels: from, to.
+    narrows: [f64; 2],
+    blocks: Blocks,
 }
 
-impl Window<'_> {
+impl<'a> Window<'a> {
+    fn new(raster: &Raster, clearance: &'a [u32], width: usize) -> Self {
+        let narrows = [WIDTHS.0, WIDTHS.1].map(|metres| (raster.pixels(metres) / 2.0).powi(2));
+        let side = raster.pixels(BLOCK).round().max(1.0) as usize;
+        Self { clearance, width, narrows, blocks: Blocks::new(side, clearance, width) }
+    }
+
     /// The pixel in the middle of each narrow and its closure.
-    fn narrows(&self, raster: &Raster) -> Vec<(usize, Bar)> {
-        let Self { clearance, width } = *self;
+    fn narrows(&self) -> Vec<(usize, Bar)> {
         let basins = self.basins();
         let mut borders: Vec<(u32, u32, usize)> = Vec::new();
-        for step in [1, width] {
-            for (pixel, (&a, &b)) in basins.iter().zip(&basins[step..]).enumerate() {
+        for step in [1, self.blocks.width] {
+            for (block, (&a, &b)) in basins.iter().zip(&basins[step..]).enumerate() {
                 if a != b && a != 0 && b != 0 {
-                    borders.push((a.min(b), a.max(b), if a < b { pixel } else { pixel + step }));
+                    borders.push((a.min(b), a.max(b), if a < b { block } else { block + step }));
                 }
             }
         }
         borders.sort_unstable();
         borders.dedup();
-        let widths = [WIDTHS.0, WIDTHS.1].map(|metres| raster.pixels(metres));
         borders
             .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
             .flat_map(|border| self.openings(border))
-            .filter(|&pixel| (widths[0]..=widths[1]).contains(&(2.0 * f64::from(clearance[pixel]).sqrt())))
+            .map(|block| self.blocks.widest(block, self.clearance, self.width))
+            .filter(|&pixel| (self.narrows[0]..=self.narrows[1]).contains(&f64::from(self.clearance[pixel])))
             .filter_map(|pixel| self.closure(pixel).map(|bar| (pixel, bar)))
             .collect()
     }
@@ -81,18 +93,19 @@ impl Window<'_> {
     /// The basins of the clearance: places that a narrow parts from all others (watershed, with basins joined where the
     /// way between them is hardly tighter than the tighter of the two).
     fn basins(&self) -> Vec<u32> {
-        let clearance = self.clearance;
+        let clearance = &self.blocks.clearance;
         let mut sets = Sets::new(1);
         let mut tops = vec![0u32];
         let mut basins = vec![0u32; clearance.len()];
-        for pixel in self.by_clearance() {
-            let pixel = pixel as usize;
-            let around = self.around(pixel).map(|beside| basins[beside]);
+        let least = (NARROW * NARROW * self.narrows[0]).ceil().max(1.0) as u32;
+        for block in self.blocks.by_clearance(least) {
+            let block = block as usize;
+            let around = self.blocks.around(block).map(|beside| basins[beside]);
             // Mostly all are of one.
             let most = around.into_iter().fold(0, u32::max);
             let others: u32 = around.iter().map(|&basin| u32::from(basin != 0 && basin != most)).sum();
             if others == 0 && most != 0 {
-                basins[pixel] = sets.of(most);
+                basins[block] = sets.of(most);
                 continue;
             }
             let mut here = 0;
@@ -107,16 +120,16 @@ impl Window<'_> {
                 }
                 let rank = |set: u32| (tops[set as usize], u32::MAX - set);
                 let (wide, tight) = if rank(here) > rank(other) { (here, other) } else { (other, here) };
-                if f64::from(clearance[pixel]) >= NARROW * NARROW * f64::from(tops[tight as usize]) {
+                if f64::from(clearance[block]) >= NARROW * NARROW * f64::from(tops[tight as usize]) {
                     sets.join(wide, tight);
                 }
                 here = wide;
             }
             if here == 0 {
                 here = sets.add();
-                tops.push(clearance[pixel]);
+                tops.push(clearance[block]);
             }
-            basins[pixel] = here;
+            basins[block] = here;
         }
         let roots: Vec<u32> = (0..tops.len() as u32).map(|basin| sets.of(basin)).collect();
         for basin in &mut basins {
@@ -125,28 +138,9 @@ impl Window<'_> {
         basins
     }
 
-    /// Free pixels from the widest place to the tightest (a counting sort).
-    fn by_clearance(&self) -> Vec<u32> {
-        let clearance = self.clearance;
-        let top = clearance.iter().copied().max().unwrap_or(0) as usize;
-        let mut starts = vec![0usize; top + 2];
-        let free = || clearance.iter().enumerate().filter(|(_, squared)| **squared != 0);
-        free().for_each(|(_, &squared)| starts[top - squared as usize + 1] += 1);
-        for n in 1..starts.len() {
-            starts[n] += starts[n - 1];
-        }
-        let mut order = vec![0; starts[top + 1]];
-        for (pixel, &squared) in free() {
-            let start = &mut starts[top - squared as usize];
-            order[*start] = pixel as u32;
-            *start += 1;
-        }
-        order
-    }
-
-    /// The widest pixel of each connected piece of the border between two basins.
+    /// The widest block of each connected piece of the border between two basins.
     fn openings(&self, border: &[(u32, u32, usize)]) -> Vec<usize> {
-        let Self { clearance, width } = *self;
+        let Blocks { clearance, width, .. } = &self.blocks;
         let mut seen = vec![false; border.len()];
         let mut found = Vec::new();
         for first in 0..border.len() {
@@ -180,7 +174,7 @@ impl Window<'_> {
 
     /// From the nearest pixel that is not free to the nearest one across.
     fn closure(&self, pixel: usize) -> Option<Bar> {
-        let Self { clearance, width } = *self;
+        let Self { clearance, width, .. } = *self;
         let height = clearance.len() / width;
         let reach = f64::from(clearance[pixel]).sqrt() + TOUCH;
         let (cx, cy) = ((pixel % width) as i64, (pixel / width) as i64);
@@ -209,11 +203,5 @@ impl Window<'_> {
         let (p, q) = ([ax as f64, ay as f64], best?.1);
         let [ux, uy] = Bar { ends: [p, q] }.heading();
         Some(Bar { ends: [[p[0] + ux, p[1] + uy], [q[0] - ux, q[1] - uy]] })
-    }
-
-    /// The eight pixels around a pixel that is not on the border.
-    fn around(&self, pixel: usize) -> [usize; 8] {
-        let (below, above) = (pixel - self.width, pixel + self.width);
-        [below - 1, below, below + 1, pixel - 1, pixel + 1, above - 1, above, above + 1]
     }
 }
