@@ -461,17 +461,25 @@ pub fn close(flags: &mut [bool], longest: usize) {
 /// Runs of flags that are `wanted`: from, to.
 pub fn runs(flags: &[bool], wanted: bool) -> Vec<(usize, usize)> {
     let mut found = Vec::new();
-    let mut start = None;
-    for (n, &flag) in flags.iter().enumerate() {
-        match (flag == wanted, start) {
-            (true, None) => start = Some(n),
-            (false, Some(from)) => {
-                found.push((from, n));
-                start = None;
-            }
-            _ => {}
-        }
+    let mut from = next(flags, 0, wanted);
+    while from < flags.len() {
+        let to = next(flags, from, !wanted);
+        found.push((from, to));
+        from = next(flags, to, wanted);
     }
-    found.extend(start.map(|from| (from, flags.len())));
     found
+}
+
+/// The next flag that is `wanted`, from one on, or the end.
+fn next(flags: &[bool], from: usize, wanted: bool) -> usize {
+    // Many at a time: mostly they are alike.
+    const MANY: usize = 32;
+    let mut at = from;
+    for chunk in flags[from..].chunks_exact(MANY) {
+        if chunk.iter().fold(false, |any, &flag| any | (flag == wanted)) {
+            break;
+        }
+        at += MANY;
+    }
+    flags[at..].iter().position(|&flag| flag == wanted).map_or(flags.len(), |n| at + n)
 }

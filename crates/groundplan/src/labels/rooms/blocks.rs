@@ -1,40 +1,51 @@
 //! The free space in blocks of pixels: what is wider than a crack shows in them as well, and there are far fewer.
 
+use super::clearance::Rows;
+use std::ops::Range;
+
 /// Blocks of so many pixels along a side, with a border of blocks that hold none.
 pub struct Blocks {
     side: usize,
     pub width: usize,
+    /// The pixels' columns and rows.
+    columns: Range<usize>,
+    rows: Range<usize>,
     /// The greatest squared clearance in each, in pixels.
     pub clearance: Vec<u32>,
 }
 
 impl Blocks {
-    /// From the clearances of pixels, so many in a row.
-    pub fn new(side: usize, pixels: &[u32], width: usize) -> Self {
-        let own = width.div_ceil(side) + 2;
-        let mut clearance = Vec::with_capacity(own * ((pixels.len() / width).div_ceil(side) + 2));
-        clearance.resize(own, 0);
-        let mut most = vec![0; width];
-        for rows in pixels.chunks(side * width) {
+    /// From the clearances of pixels in some columns and rows, so many along the side of a block.
+    pub fn new(side: usize, pixels: &Rows, [columns, rows]: [Range<usize>; 2]) -> Self {
+        let width = columns.len().div_ceil(side) + 2;
+        let mut clearance = Vec::with_capacity(width * (rows.len().div_ceil(side) + 2));
+        clearance.resize(width, 0);
+        let mut most = vec![0; columns.len()];
+        for y in rows.clone().step_by(side) {
             most.fill(0);
-            for row in rows.chunks(width) {
+            for row in (y..(y + side).min(rows.end)).map(|y| &pixels.row(y)[columns.clone()]) {
                 most.iter_mut().zip(row).for_each(|(most, own)| *most = (*most).max(*own));
             }
             clearance.push(0);
             clearance.extend(most.chunks(side).map(|pixels| pixels.iter().fold(0, |most, own| most.max(*own))));
             clearance.push(0);
         }
-        clearance.resize(clearance.len() + own, 0);
-        Self { side, width: own, clearance }
+        clearance.resize(clearance.len() + width, 0);
+        Self { side, width, columns, rows, clearance }
     }
 
     /// The pixel of a block that has the greatest clearance, the first of several.
-    pub fn widest(&self, block: usize, clearance: &[u32], width: usize) -> usize {
-        let [x, y] = [block % self.width - 1, block / self.width - 1].map(|n| n * self.side);
-        let columns = x..(x + self.side).min(width);
-        let rows = y..(y + self.side).min(clearance.len() / width);
-        let pixels = rows.flat_map(|y| columns.clone().map(move |x| y * width + x));
-        pixels.max_by_key(|&pixel| (clearance[pixel], usize::MAX - pixel)).unwrap_or(0)
+    pub fn widest(&self, block: usize, pixels: &Rows) -> [usize; 2] {
+        let part = |all: &Range<usize>, n: usize| {
+            let from = all.start + n * self.side;
+            from..(from + self.side).min(all.end)
+        };
+        let columns = part(&self.columns, block % self.width - 1);
+        let all = part(&self.rows, block / self.width - 1).flat_map(|y| columns.clone().map(move |x| [x, y]));
+        let best = |best: [usize; 2], [x, y]: [usize; 2]| {
+            if pixels.row(y)[x] > pixels.row(best[1])[best[0]] { [x, y] } else { best }
+        };
+        all.reduce(best).unwrap_or([self.columns.start, self.rows.start])
     }
 
     /// The blocks with so much clearance at least, from the widest to the tightest (a counting sort).

@@ -3,7 +3,7 @@
 
 use super::raster::Raster;
 use super::runs::{Run, Runs};
-use crate::bands::map_bands;
+use crate::bands::map_each;
 use std::ops::Range;
 
 /// Rasters of more pixels than this are looked at piece by piece.
@@ -12,39 +12,44 @@ const WHOLE: usize = 1 << 24;
 const ROWS: usize = 128;
 
 /// The clearances of a raster: kept where they are few, else made again whenever they are asked for.
-pub struct Clearance(Option<Vec<u32>>);
+pub struct Clearance(Option<Rows>);
+
+/// Squared distances of the pixels of some rows, in bands of rows.
+pub struct Rows {
+    pub width: usize,
+    pub height: usize,
+    /// Rows of a band.
+    band: usize,
+    bands: Vec<Vec<u32>>,
+}
+
+impl Rows {
+    /// One row, from the lowest.
+    pub fn row(&self, y: usize) -> &[u32] {
+        &self.bands[y / self.band][y % self.band * self.width..][..self.width]
+    }
+}
 
 impl Clearance {
     pub fn new(raster: &Raster, threads: usize) -> Self {
-        let is_whole = raster.len() <= WHOLE;
-        Self(is_whole.then(|| within(raster, [0..raster.width, 0..raster.height], threads)))
+        Self((raster.len() <= WHOLE).then(|| whole(raster, threads)))
     }
 
     /// All of them, where they are kept.
-    pub fn whole(&self) -> Option<&[u32]> {
-        self.0.as_deref()
-    }
-
-    /// Those within some columns and rows; what is on their border counts as not free.
-    pub fn within(&self, raster: &Raster, window: [Range<usize>; 2]) -> Vec<u32> {
-        let Some(all) = &self.0 else { return within(raster, window, 1) };
-        let [columns, rows] = window;
-        let width = columns.len();
-        let mut part = vec![0; width * rows.len()];
-        for (to, y) in part.chunks_mut(width).zip(rows.clone()).skip(1).take(rows.len().saturating_sub(2)) {
-            let from = y * raster.width + columns.start;
-            to[1..width - 1].copy_from_slice(&all[from + 1..from + width - 1]);
-        }
-        part
+    pub fn whole(&self) -> Option<&Rows> {
+        self.0.as_ref()
     }
 
     /// Calls `visit` with each run and the clearances of its pixels.
     pub fn over(&self, raster: &Raster, runs: &Runs, threads: usize, mut visit: impl FnMut(usize, &[u32])) {
-        if let Some(all) = &self.0 {
-            runs.all.iter().enumerate().for_each(|(n, run)| visit(n, &all[run.pixels()]));
+        let width = raster.width;
+        if let Some(rows) = &self.0 {
+            for (n, run) in runs.all.iter().enumerate() {
+                let start = run.pixels().start;
+                visit(n, &rows.row(start / width)[start % width..][..run.len()]);
+            }
             return;
         }
-        let width = raster.width;
         let mut next = 0;
         band_by_band(raster, threads, |rows, part| {
             let (start, end) = (rows.start * width, rows.end * width);
@@ -56,35 +61,70 @@ impl Clearance {
     }
 }
 
-/// The clearances within some columns and rows of the raster; what is on their border or beyond counts as not free.
-fn within(raster: &Raster, [columns, rows]: [Range<usize>; 2], threads: usize) -> Vec<u32> {
-    let width = columns.len();
+/// Those of a whole raster, whose border is not free.
+fn whole(raster: &Raster, threads: usize) -> Rows {
+    let (width, height, columns) = (raster.width, raster.height, 0..raster.width);
+    // Without threads one band, for what bears on a band from beyond takes a pass of its own.
+    let band = if threads <= 1 { height } else { height.div_ceil(4 * threads).max(ROWS) };
+    let bands: Vec<Range<usize>> = (0..height).step_by(band).map(|y| y..(y + band).min(height)).collect();
+    let above = above(raster, &bands);
+    let below = if bands.len() == 1 { vec![vec![0; width]] } else { below(raster, &bands) };
+    let made = map_each(bands.len(), threads, |n| {
+        let mut band = heights(raster, &columns, bands[n].clone(), &mut below[n].clone(), &above[n]);
+        square(&mut band, width);
+        band
+    });
+    Rows { width, height, band, bands: made }
+}
+
+/// Those within some columns and rows of a raster; what is on their border or beyond counts as not free.
+pub fn within(raster: &Raster, [columns, rows]: [Range<usize>; 2]) -> Rows {
+    let (width, height) = (columns.len(), rows.len());
     let border = vec![0; width];
-    let inner = rows.start + 1..rows.end - 1;
-    let heights = heights(raster, &columns, inner, &mut border.clone(), &border);
-    let mut parts = squared(&heights, width, threads);
-    parts.insert(0, border.clone());
-    parts.push(border);
-    parts.concat()
+    let mut inner = heights(raster, &columns, rows.start + 1..rows.end - 1, &mut border.clone(), &border);
+    square(&mut inner, width);
+    Rows { width, height, band: height, bands: vec![[border.clone(), inner, border].concat()] }
+}
+
+/// How far it is to what is not free in the row that follows each band.
+fn above(raster: &Raster, bands: &[Range<usize>]) -> Vec<Vec<u32>> {
+    let mut row = vec![0; raster.width];
+    let mut above = vec![row.clone(); bands.len()];
+    for (n, band) in bands.iter().enumerate().skip(1).rev() {
+        for y in band.clone().rev() {
+            step(raster, &(0..raster.width), y, &mut row);
+        }
+        above[n - 1].clone_from(&row);
+    }
+    above
+}
+
+/// How far it is to what is not free in the row before each band.
+fn below(raster: &Raster, bands: &[Range<usize>]) -> Vec<Vec<u32>> {
+    let mut row = vec![0; raster.width];
+    let before = |band: &Range<usize>| {
+        let before = row.clone();
+        band.clone().for_each(|y| step(raster, &(0..raster.width), y, &mut row));
+        before
+    };
+    bands.iter().map(before).collect()
 }
 
 /// Calls `visit` with some rows after another and their clearances.
 fn band_by_band(raster: &Raster, threads: usize, mut visit: impl FnMut(Range<usize>, &[u32])) {
     let (width, columns) = (raster.width, 0..raster.width);
     let bands: Vec<Range<usize>> = (0..raster.height).step_by(ROWS).map(|y| y..(y + ROWS).min(raster.height)).collect();
-    // From above first: how far it is to what is not free in the row that follows each band.
-    let mut above = vec![vec![0; width]; bands.len()];
-    let mut row = vec![0; width];
-    for (band, above) in bands.iter().zip(&mut above).rev() {
-        above.clone_from(&row);
-        for y in band.clone().rev() {
-            step(raster, &columns, y, &mut row);
-        }
-    }
+    let above = above(raster, &bands);
     let mut below = vec![0; width];
     for (band, above) in bands.into_iter().zip(&above) {
         let heights = heights(raster, &columns, band.clone(), &mut below, above);
-        visit(band, &squared(&heights, width, threads).concat());
+        let parts: Vec<&[u32]> = heights.chunks(ROWS.div_ceil(threads.max(1)) * width).collect();
+        let squared = |n: usize| {
+            let mut part = parts[n].to_vec();
+            square(&mut part, width);
+            part
+        };
+        visit(band, &map_each(parts.len(), threads, squared).concat());
     }
 }
 
@@ -118,21 +158,20 @@ fn heights(raster: &Raster, columns: &Range<usize>, rows: Range<usize>, below: &
     heights
 }
 
-fn squared(heights: &[u32], width: usize, threads: usize) -> Vec<Vec<u32>> {
-    map_bands(heights.len() / width, threads, |band| {
-        let mut squared = vec![0u32; band.len() * width];
-        let mut seats = Vec::new();
-        for (row, to) in heights[band.start * width..].chunks(width).zip(squared.chunks_mut(width)) {
-            // Within a run of free pixels only the run and its two ends count.
-            let mut next = 1;
-            while let Some(from) = (next..width).find(|&x| row[x] != 0) {
-                let end = (from..width).find(|&x| row[x] == 0).unwrap_or(width - 1);
-                envelope(&row[from - 1..=end], &mut to[from - 1..=end], &mut seats);
-                next = end + 1;
-            }
+/// From the heights of rows to the squared distances.
+fn square(rows: &mut [u32], width: usize) {
+    let (mut seats, mut heights) = (Vec::new(), Vec::with_capacity(width));
+    for row in rows.chunks_mut(width) {
+        heights.clear();
+        heights.extend_from_slice(row);
+        // Within a run of free pixels only the run and its two ends count.
+        let mut next = 1;
+        while let Some(from) = (next..width).find(|&x| heights[x] != 0) {
+            let end = (from..width).find(|&x| heights[x] == 0).unwrap_or(width - 1);
+            envelope(&heights[from - 1..=end], &mut row[from - 1..=end], &mut seats);
+            next = end + 1;
         }
-        squared
-    })
+    }
 }
 
 /// The lower envelope of the parabolas over some heights; `seats` is room for the places of those that are in it, and

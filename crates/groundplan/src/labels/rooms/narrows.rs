@@ -1,7 +1,7 @@
 //! Narrows: where the free space is tighter than on both sides, whether or not a line leads there.
 
 use super::blocks::Blocks;
-use super::clearance::Clearance;
+use super::clearance::{Clearance, Rows, within};
 use super::gaps::Bar;
 use super::raster::Raster;
 use crate::bands::map_each;
@@ -18,58 +18,57 @@ const BLOCK: f64 = 0.1;
 const TOUCH: f64 = 1.6;
 /// and so far from side by side, as the cosine of the angle between them.
 const OPPOSITE: f64 = -0.3;
-/// Rasters of more pixels than this are looked at square by square.
+/// Rasters of more pixels than this are looked at square by square,
 const AT_ONCE: usize = 1 << 22;
-/// A large raster is looked at by squares of so many pixels, each with so much around it, metres, as a narrow and the
+/// by squares of so many pixels, each with so much around it, metres, as a narrow and the
 /// places that it joins may take.
 const SQUARE: usize = 2048;
 const AROUND: f64 = 8.0;
 
 /// Straight closures of all narrows, in the order of the places that they part; on a large raster, square by square.
 pub fn find(raster: &Raster, clearance: &Clearance, threads: usize) -> Vec<Bar> {
-    if let Some(clearance) = clearance.whole().filter(|all| all.len() <= AT_ONCE) {
-        let found = Window::new(raster, clearance, raster.width).narrows();
-        return found.into_iter().map(|(_, bar)| bar).collect();
-    }
     let around = raster.pixels(AROUND).ceil() as usize;
-    let parts = |size: usize| (0..size).step_by(SQUARE).map(move |from| from..(from + SQUARE).min(size));
+    let square = if raster.len() <= AT_ONCE { raster.len() } else { SQUARE };
+    let parts = |size: usize| (0..size).step_by(square).map(move |from| from..size.min(from + square));
     let squares: Vec<[Range<usize>; 2]> =
         parts(raster.height).flat_map(|rows| parts(raster.width).map(move |columns| [columns, rows.clone()])).collect();
     let wider = |range: &Range<usize>, size: usize| range.start.saturating_sub(around)..(range.end + around).min(size);
     map_each(squares.len(), threads, |n| {
         let [columns, rows] = &squares[n];
         let window = [wider(columns, raster.width), wider(rows, raster.height)];
-        let [left, low] = [0, 1].map(|axis| window[axis].start);
-        let width = window[0].len();
-        let clearance = clearance.within(raster, window);
-        let found = Window::new(raster, &clearance, width).narrows().into_iter();
+        let (found, corner) = if let Some(pixels) = clearance.whole() {
+            (Window::new(raster, pixels, window).narrows(), [0; 2])
+        } else {
+            let corner = [0, 1].map(|axis| window[axis].start);
+            let pixels = within(raster, window);
+            (Window::new(raster, &pixels, [0..pixels.width, 0..pixels.height]).narrows(), corner)
+        };
         let own = found
-            .filter(|(pixel, _)| columns.contains(&(pixel % width + left)) && rows.contains(&(pixel / width + low)));
-        own.map(|(_, Bar { ends })| Bar { ends: ends.map(|[x, y]| [x + left as f64, y + low as f64]) })
-            .collect::<Vec<_>>()
+            .into_iter()
+            .filter(|([x, y], _)| columns.contains(&(x + corner[0])) && rows.contains(&(y + corner[1])));
+        let moved = |end: [f64; 2]| [end[0] + corner[0] as f64, end[1] + corner[1] as f64];
+        own.map(|(_, Bar { ends })| Bar { ends: ends.map(moved) }).collect::<Vec<_>>()
     })
     .concat()
 }
 
-/// Part of the free space, with a border that is none of it.
+/// Part of the free space.
 struct Window<'a> {
-    /// Squared distance of each pixel to the nearest that is not free; 0 for these.
-    clearance: &'a [u32],
-    width: usize,
+    pixels: &'a Rows,
     /// Squared clearances of narrows in pixels: from, to.
     narrows: [f64; 2],
     blocks: Blocks,
 }
 
 impl<'a> Window<'a> {
-    fn new(raster: &Raster, clearance: &'a [u32], width: usize) -> Self {
+    fn new(raster: &Raster, pixels: &'a Rows, window: [Range<usize>; 2]) -> Self {
         let narrows = [WIDTHS.0, WIDTHS.1].map(|metres| (raster.pixels(metres) / 2.0).powi(2));
         let side = raster.pixels(BLOCK).round().max(1.0) as usize;
-        Self { clearance, width, narrows, blocks: Blocks::new(side, clearance, width) }
+        Self { pixels, narrows, blocks: Blocks::new(side, pixels, window) }
     }
 
     /// The pixel in the middle of each narrow and its closure.
-    fn narrows(&self) -> Vec<(usize, Bar)> {
+    fn narrows(&self) -> Vec<([usize; 2], Bar)> {
         let basins = self.basins();
         let mut borders: Vec<(u32, u32, usize)> = Vec::new();
         for step in [1, self.blocks.width] {
@@ -84,8 +83,8 @@ impl<'a> Window<'a> {
         borders
             .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
             .flat_map(|border| self.openings(border))
-            .map(|block| self.blocks.widest(block, self.clearance, self.width))
-            .filter(|&pixel| (self.narrows[0]..=self.narrows[1]).contains(&f64::from(self.clearance[pixel])))
+            .map(|block| self.blocks.widest(block, self.pixels))
+            .filter(|&[x, y]| (self.narrows[0]..=self.narrows[1]).contains(&f64::from(self.pixels.row(y)[x])))
             .filter_map(|pixel| self.closure(pixel).map(|bar| (pixel, bar)))
             .collect()
     }
@@ -173,17 +172,17 @@ impl<'a> Window<'a> {
     }
 
     /// From the nearest pixel that is not free to the nearest one across.
-    fn closure(&self, pixel: usize) -> Option<Bar> {
-        let Self { clearance, width, .. } = *self;
-        let height = clearance.len() / width;
-        let reach = f64::from(clearance[pixel]).sqrt() + TOUCH;
-        let (cx, cy) = ((pixel % width) as i64, (pixel / width) as i64);
+    fn closure(&self, [x, y]: [usize; 2]) -> Option<Bar> {
+        let Rows { width, height, .. } = *self.pixels;
+        let reach = f64::from(self.pixels.row(y)[x]).sqrt() + TOUCH;
+        let (cx, cy) = (x as i64, y as i64);
         let span = reach.ceil() as i64;
         let mut touched: Vec<(i64, i64, i64)> = Vec::new();
         for y in (cy - span).max(0)..=(cy + span).min(height as i64 - 1) {
+            let row = self.pixels.row(y as usize);
             for x in (cx - span).max(0)..=(cx + span).min(width as i64 - 1) {
                 let squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
-                if squared as f64 <= reach * reach && clearance[y as usize * width + x as usize] == 0 {
+                if squared as f64 <= reach * reach && row[x as usize] == 0 {
                     touched.push((squared, x, y));
                 }
             }
