@@ -476,7 +476,7 @@ fn next(flags: &[bool], from: usize, wanted: bool) -> usize {
     const MANY: usize = 32;
     let mut at = from;
     for chunk in flags[from..].chunks_exact(MANY) {
-        if chunk.iter().fold(false, |any, &flag| any | (flag == wanted)) {
+        if chunk.contains(&wanted) {
             break;
         }
         at += MANY;
