@@ -83,10 +83,19 @@ impl<'a> Window<'a> {
         borders
             .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
             .flat_map(|border| self.openings(border))
-            .map(|block| self.blocks.widest(block, self.pixels))
-            .filter(|&[x, y]| (self.narrows[0]..=self.narrows[1]).contains(&f64::from(self.pixels.row(y)[x])))
-            .filter_map(|pixel| self.closure(pixel).map(|bar| (pixel, bar)))
+            .filter_map(|block| self.narrowest(block))
             .collect()
+    }
+
+    /// The shortest closure through a block or one beside it, and the pixel in its middle.
+    fn narrowest(&self, block: usize) -> Option<([usize; 2], Bar)> {
+        let beside = std::iter::once(block).chain(self.blocks.around(block));
+        let free = beside.filter(|&block| self.blocks.clearance[block] != 0);
+        let pixels = free.map(|block| self.blocks.widest(block, self.pixels));
+        let is_narrow =
+            |&[x, y]: &[usize; 2]| (self.narrows[0]..=self.narrows[1]).contains(&f64::from(self.pixels.row(y)[x]));
+        let closures = pixels.filter(is_narrow).filter_map(|pixel| self.closure(pixel).map(|bar| (pixel, bar)));
+        closures.min_by(|a, b| a.1.length().total_cmp(&b.1.length()))
     }
 
     /// The basins of the clearance: places that a narrow parts from all others (watershed, with basins joined where the
@@ -174,13 +183,18 @@ impl<'a> Window<'a> {
     /// From the nearest pixel that is not free to the nearest one across.
     fn closure(&self, [x, y]: [usize; 2]) -> Option<Bar> {
         let Rows { width, height, .. } = *self.pixels;
-        let reach = f64::from(self.pixels.row(y)[x]).sqrt() + TOUCH;
+        let clearance = f64::from(self.pixels.row(y)[x]);
+        let reach = clearance.sqrt() + TOUCH;
         let (cx, cy) = (x as i64, y as i64);
         let span = reach.ceil() as i64;
         let mut touched: Vec<(i64, i64, i64)> = Vec::new();
         for y in (cy - span).max(0)..=(cy + span).min(height as i64 - 1) {
             let row = self.pixels.row(y as usize);
-            for x in (cx - span).max(0)..=(cx + span).min(width as i64 - 1) {
+            // What is nearer than its clearance is free.
+            let across = |squared: f64| (squared - ((y - cy) * (y - cy)) as f64).max(0.0).sqrt();
+            let (from, to) = (across(clearance).ceil() as i64, across(reach * reach).floor() as i64);
+            let sides = (cx - to..=cx - from).chain(cx + from.max(1)..=cx + to);
+            for x in sides.filter(|x| (0..width as i64).contains(x)) {
                 let squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
                 if squared as f64 <= reach * reach && row[x as usize] == 0 {
                     touched.push((squared, x, y));
