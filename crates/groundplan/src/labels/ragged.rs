@@ -187,7 +187,6 @@ impl<'a> Candidate<'a> {
     /// The stretches of so many columns at least none of which is closed or a rival's.
     fn open(&self, within: Range<usize>, least: usize, rivals: &[Range<usize>]) -> Vec<Range<usize>> {
         let count = within.end;
-        let is_closed = |c: &usize| self.blocked.at(*c) >= self.closed || rivals.iter().any(|rival| rival.contains(c));
         let mut stretches = Vec::new();
         let mut from = within.start;
         while from + least <= count {
@@ -198,7 +197,9 @@ impl<'a> Candidate<'a> {
                 from = last + 1;
                 continue;
             }
-            let to = (from + least..count).find(is_closed).unwrap_or(count);
+            let ahead = |rival: &Range<usize>| (rival.start.max(from + least)..rival.end.min(count)).next();
+            let closed = self.blocked.first(from + least..count, self.closed);
+            let to = closed.into_iter().chain(rivals.iter().filter_map(ahead)).min().unwrap_or(count);
             stretches.push(from..to);
             from = to + 1;
         }
@@ -245,10 +246,9 @@ impl<'a> Candidate<'a> {
 
     /// The columns around a way along it up to where it is closed: beyond nothing bears on what lies there.
     fn around(&self, way: &Strip) -> Range<usize> {
-        let is_closed = |c: &usize| self.blocked.at(*c) >= self.closed;
         let [first, last] = way.along.map(|u| self.view.column(u));
-        let from = (0..first).rev().find(is_closed).map_or(0, |c| c + 1);
-        from..(last..self.view.size[0]).find(is_closed).unwrap_or(self.view.size[0])
+        let from = self.blocked.last(0..first, self.closed).map_or(0, |c| c + 1);
+        from..self.blocked.first(last..self.view.size[0], self.closed).unwrap_or(self.view.size[0])
     }
 
     /// The ways along it.

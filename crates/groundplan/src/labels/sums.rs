@@ -21,6 +21,10 @@ pub enum What {
 
 /// Views of more cells than this keep squares.
 const MANY: usize = 1 << 23;
+/// A cell has so many samples at most.
+const SAMPLES: usize = 9;
+/// So many sums are compared together.
+const TOGETHER: usize = 32;
 /// Cells along the side of a square.
 const SIDE: usize = 8;
 /// A byte for each of eight columns.
@@ -32,7 +36,7 @@ const ALIKE: u32 = 1 << 31;
 /// The cells of a view.
 pub enum Cells {
     /// For each thing that is asked, row after row the sums of all rows before: one row more than there are of cells.
-    Summed { width: usize, sums: [Vec<u32>; 3] },
+    Summed { width: usize, sums: [Vec<u16>; 3] },
     /// Bands of rows of squares.
     Squared { width: usize, bands: Vec<Band> },
 }
@@ -65,7 +69,7 @@ impl Cells {
             cells.chunks_mut(width).zip(band).for_each(|(row, n)| make(n, row));
             cells
         };
-        if width * height > MANY {
+        if width * height > MANY || height > usize::from(u16::MAX) / SAMPLES {
             let bands = map_bands(height, threads, |band| Band::new(width, &rows(band)));
             return Self::Squared { width, bands };
         }
@@ -94,8 +98,8 @@ impl Cells {
 /// Some rows of cells.
 pub enum Rows<'a> {
     Summed {
-        below: &'a [u32],
-        above: &'a [u32],
+        below: &'a [u16],
+        above: &'a [u16],
     },
     Squared {
         width: usize,
@@ -111,7 +115,7 @@ impl Rows<'_> {
     /// The sum over them of one column.
     pub fn at(&self, column: usize) -> u32 {
         match self {
-            Self::Summed { below, above } => above[column] - below[column],
+            Self::Summed { below, above } => u32::from(above[column] - below[column]),
             Self::Squared { width, bands, what, rows, last } => {
                 let n = column / SIDE;
                 if last.get().0 != n {
@@ -124,12 +128,40 @@ impl Rows<'_> {
         }
     }
 
+    /// The first of some columns whose sum is as large as that.
+    pub fn first(&self, columns: Range<usize>, least: u32) -> Option<usize> {
+        match self {
+            Self::Summed { below, above } => {
+                let least = u16::try_from(least).ok()?;
+                columns.clone().step_by(TOGETHER).find_map(|from| {
+                    let some = from..columns.end.min(from + TOGETHER);
+                    let sums =
+                        || above[some.clone()].iter().zip(&below[some.clone()]).map(|(above, below)| above - below);
+                    (sums().fold(0, u16::max) >= least)
+                        .then(|| sums().position(|sum| sum >= least).map_or(from, |n| from + n))
+                })
+            }
+            Self::Squared { .. } => columns.into_iter().find(|&column| self.at(column) >= least),
+        }
+    }
+
     /// The last of some columns whose sum is as large as that.
     pub fn last(&self, columns: Range<usize>, least: u32) -> Option<usize> {
         match self {
             Self::Summed { below, above } => {
-                let sums = above[columns.clone()].iter().zip(&below[columns.clone()]);
-                sums.map(|(above, below)| above - below).rposition(|sum| sum >= least).map(|n| columns.start + n)
+                let least = u16::try_from(least).ok()?;
+                // From the far end, many at a time.
+                let mut end = columns.end;
+                while end > columns.start {
+                    let some = columns.start.max(end.saturating_sub(TOGETHER))..end;
+                    let sums =
+                        || above[some.clone()].iter().zip(&below[some.clone()]).map(|(above, below)| above - below);
+                    if sums().fold(0, u16::max) >= least {
+                        return sums().rposition(|sum| sum >= least).map(|n| some.start + n);
+                    }
+                    end = some.start;
+                }
+                None
             }
             Self::Squared { .. } => columns.rev().find(|&column| self.at(column) >= least),
         }
@@ -139,7 +171,8 @@ impl Rows<'_> {
     pub fn over(&self, columns: Range<usize>) -> Vec<u32> {
         match self {
             Self::Summed { below, above } => {
-                above[columns.clone()].iter().zip(&below[columns]).map(|(above, below)| above - below).collect()
+                let sums = above[columns.clone()].iter().zip(&below[columns]);
+                sums.map(|(above, below)| u32::from(above - below)).collect()
             }
             Self::Squared { width, bands, what, rows, .. } => {
                 let squares = columns.start / SIDE..columns.end.div_ceil(SIDE);
@@ -268,13 +301,13 @@ fn barred(width: usize, cells: &[u8]) -> Vec<u8> {
 }
 
 /// Sums of rows of cells: a row of nothing, the first row, the first two, and so on.
-fn cumulate(width: usize, cells: &[u8], part: impl Fn(u8) -> u8) -> Vec<u32> {
-    let mut sums = vec![0u32; cells.len() + width];
-    for (n, row) in cells.chunks(width).enumerate() {
-        let (below, above) = sums[n * width..(n + 2) * width].split_at_mut(width);
-        for ((above, below), &cell) in above.iter_mut().zip(below).zip(row) {
-            *above = *below + u32::from(part(cell));
-        }
+fn cumulate(width: usize, cells: &[u8], part: impl Fn(u8) -> u8) -> Vec<u16> {
+    let mut sum = vec![0; width];
+    let mut sums = Vec::with_capacity(cells.len() + width);
+    sums.extend_from_slice(&sum);
+    for row in cells.chunks(width) {
+        sum.iter_mut().zip(row).for_each(|(sum, &cell)| *sum += u16::from(part(cell)));
+        sums.extend_from_slice(&sum);
     }
     sums
 }

@@ -274,6 +274,11 @@ impl Shares<'_> {
         self.rows.at(column)
     }
 
+    /// The first of some columns with so many.
+    pub fn first(&self, columns: Range<usize>, least: u32) -> Option<usize> {
+        self.rows.first(columns, least)
+    }
+
     /// The last of some columns with so many.
     pub fn last(&self, columns: Range<usize>, least: u32) -> Option<usize> {
         self.rows.last(columns, least)
