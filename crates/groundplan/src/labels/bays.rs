@@ -21,7 +21,9 @@ const POST: f64 = 2.5;
 const OWN: f64 = 0.08;
 const STEPS: i32 = 60;
 /// Multiples of its frequency that count.
-const HARMONICS: u32 = 4;
+const HARMONICS: usize = 4;
+/// So many frequencies are worth a thread's while.
+const TOGETHER: usize = 64;
 /// A row recurs when chance gives such a power less often than once in exp of this (Rayleigh).
 const CLEAR: f64 = 1.5;
 /// What recurs at half a pitch does so at the whole one too, with this share of the power.
@@ -69,11 +71,16 @@ fn along(row: &Row, specks: &[[f64; 2]]) -> Vec<f64> {
 /// The pitch at which the rows have most power together; the longest of those that are about as good.
 fn common(rows: &[Vec<f64>], threads: usize) -> Option<f64> {
     let frequencies = period::frequencies(rows.iter().map(Vec::as_slice), PITCHES)?;
-    let power = |f: f64| {
-        let power = |places: &Vec<f64>| places.len() as f64 * period::measure(places, 1.0 / f).strength.powi(2);
-        rows.iter().map(power).sum::<f64>()
+    let power = |frequencies: &[f64]| {
+        let mut powers = vec![0.0; frequencies.len()];
+        for places in rows {
+            let strengths = period::strengths(places, frequencies);
+            powers.iter_mut().zip(strengths).for_each(|(sum, own)| *sum += places.len() as f64 * own * own);
+        }
+        powers
     };
-    let powers = map_each(frequencies.len(), threads, |n| power(frequencies[n]));
+    let parts: Vec<&[f64]> = frequencies.chunks(TOGETHER).collect();
+    let powers = map_each(parts.len(), threads, |n| power(parts[n])).concat();
     let mut sorted = powers.clone();
     sorted.sort_by(f64::total_cmp);
     let usual = sorted[sorted.len() / 2];
@@ -84,19 +91,20 @@ fn common(rows: &[Vec<f64>], threads: usize) -> Option<f64> {
     let good = powers.iter().position(|power| power - usual >= AS_GOOD * (best - usual))?;
     let top = (good..powers.len()).take_while(|&n| n == good || powers[n] > powers[n - 1]).last()?;
     let step = frequencies.get(1).map_or(0.0, |second| second - frequencies[0]);
-    let near = (-20..=20).map(|n| frequencies[top] + f64::from(n) * step / 20.0);
-    near.map(|f| (power(f), 1.0 / f)).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, pitch)| pitch)
+    let near: Vec<f64> = (-20..=20).map(|n| frequencies[top] + f64::from(n) * step / 20.0).collect();
+    power(&near)
+        .into_iter()
+        .zip(near.iter().map(|f| 1.0 / f))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, pitch)| pitch)
 }
 
 /// A row's own pitch near the common one. Posts are narrow: their harmonics tell it more finely than they do
 /// themselves.
 fn of_row(places: &[f64], common: f64, length: f64) -> Option<Period> {
-    let power = |pitch: f64| {
-        let harmonics = (1..=HARMONICS).map(|h| period::measure(places, pitch / f64::from(h)).strength.powi(2));
-        harmonics.sum::<f64>()
-    };
     let pitches = (-STEPS..=STEPS).map(|n| common * (1.0 + OWN * f64::from(n) / f64::from(STEPS)));
-    let own = pitches.map(|pitch| (power(pitch), pitch)).max_by(|a, b| a.0.total_cmp(&b.0))?.1;
+    let own =
+        pitches.map(|pitch| (period::power(places, pitch, HARMONICS), pitch)).max_by(|a, b| a.0.total_cmp(&b.0))?.1;
     let period = period::measure(places, own);
     let posts = places.len() as f64 / POST;
     // Two bays at least.

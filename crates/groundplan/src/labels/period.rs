@@ -25,11 +25,11 @@ pub struct Period {
 /// The longest pitch between two that is about as strong as any, from places along a line.
 pub fn find(places: &[f64], range: [f64; 2]) -> Option<Period> {
     let frequencies = frequencies(std::iter::once(places), range)?;
-    let all: Vec<Period> = frequencies.iter().map(|f| measure(places, 1.0 / f)).collect();
-    let best = all.iter().map(|p| p.strength).fold(0.0, f64::max);
-    let good = all.iter().position(|p| p.strength >= AS_GOOD * best)?;
+    let all = strengths(places, &frequencies);
+    let best = all.iter().copied().fold(0.0, f64::max);
+    let good = all.iter().position(|strength| *strength >= AS_GOOD * best)?;
     // Up to the top of that peak, and to it between the steps.
-    let top = (good..all.len()).take_while(|&n| n == good || all[n].strength > all[n - 1].strength).last()?;
+    let top = (good..all.len()).take_while(|&n| n == good || all[n] > all[n - 1]).last()?;
     let step = frequencies.get(1).map_or(0.0, |second| second - frequencies[0]);
     let near = (-20..=20).map(|n| measure(places, 1.0 / (frequencies[top] + f64::from(n) * step / 20.0)));
     near.max_by(|a, b| a.strength.total_cmp(&b.strength))
@@ -51,11 +51,53 @@ pub fn frequencies<'a>(rows: impl Iterator<Item = &'a [f64]>, [shortest, longest
     Some((0..=((last - first) / step).ceil() as usize).map(|n| first + n as f64 * step).collect())
 }
 
+/// How well places recur at each of some frequencies, which are equally far apart: a place turns by as much from each
+/// to the next.
+pub fn strengths(places: &[f64], frequencies: &[f64]) -> Vec<f64> {
+    let &[first, ref rest @ ..] = frequencies else { return Vec::new() };
+    let step = rest.first().map_or(0.0, |second| second - first);
+    let mut sums = vec![[0.0; 2]; frequencies.len()];
+    for place in places {
+        let (mut at, by) = (turned(place * first), turned(place * step));
+        for sum in &mut sums {
+            *sum = [sum[0] + at[0], sum[1] + at[1]];
+            at = times(at, by);
+        }
+    }
+    sums.into_iter().map(|[cos, sin]| libm::hypot(sin, cos) / places.len().max(1) as f64).collect()
+}
+
+/// The squared strengths at a pitch and its harmonics, so many together.
+pub fn power(places: &[f64], pitch: f64, harmonics: usize) -> f64 {
+    let mut sums = vec![[0.0; 2]; harmonics];
+    for place in places {
+        let by = turned(place / pitch);
+        let mut at = by;
+        for sum in &mut sums {
+            *sum = [sum[0] + at[0], sum[1] + at[1]];
+            at = times(at, by);
+        }
+    }
+    let squared = |[cos, sin]: [f64; 2]| cos * cos + sin * sin;
+    sums.into_iter().map(squared).sum::<f64>() / (places.len().max(1) as f64).powi(2)
+}
+
+/// Cosine and sine of so many turns.
+fn turned(turns: f64) -> [f64; 2] {
+    let angle = TAU * (turns - turns.floor());
+    [libm::cos(angle), libm::sin(angle)]
+}
+
+/// One turn after another.
+fn times([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
+    [a * c - b * d, a * d + b * c]
+}
+
 /// How well places recur at a pitch.
 pub fn measure(places: &[f64], pitch: f64) -> Period {
-    let (sin, cos) = places.iter().fold((0.0, 0.0), |(sin, cos), place| {
-        let angle = TAU * (place / pitch - (place / pitch).floor());
-        (sin + libm::sin(angle), cos + libm::cos(angle))
+    let [cos, sin] = places.iter().fold([0.0; 2], |[cos, sin], place| {
+        let [c, s] = turned(place / pitch);
+        [cos + c, sin + s]
     });
     let turn = libm::atan2(sin, cos) / TAU;
     let strength = libm::hypot(sin, cos) / places.len().max(1) as f64;
