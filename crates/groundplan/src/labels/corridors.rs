@@ -5,7 +5,7 @@
 //! Gaps in a side shorter than a rack's bay are the bay; longer ones are where other ways open. Of strips that overlap
 //! the one with the most wall along it is kept, and the others keep what is left of them.
 
-use super::turned::Turned;
+use super::turned::{IMPASSABLE, Turned};
 use super::{Evidence, barriers, ragged};
 use crate::bands::map_each;
 use crate::parameters::Parameters;
@@ -202,13 +202,25 @@ impl<'a> Family<'a> {
                 }
                 if width >= self.parameters.labels_min_width {
                     let sides = [low, high];
-                    let strips = self.strips(&self.columns(sides, 0..self.view.size[0]), 0, across);
-                    found.extend(strips.into_iter().map(|strip| Candidate { strip, sides }));
+                    for open in self.open(across) {
+                        let strips = self.strips(&self.columns(sides, open.clone()), open.start, across);
+                        found.extend(strips.into_iter().map(|strip| Candidate { strip, sides }));
+                    }
                 }
             }
             found
         };
         map_each(self.view.offsets.len(), threads, above).into_iter().flatten().collect()
+    }
+
+    /// The stretches of a strip that are not closed and are long enough for a corridor.
+    fn open(&self, across: [f64; 2]) -> Vec<std::ops::Range<usize>> {
+        let (view, width) = (self.view, across[1] - across[0]);
+        let margin = MARGIN.min(0.2 * width);
+        let blocked = view.blocked_in(across[0] + margin, across[1] - margin);
+        let closed = blocked.least(|share| share > IMPASSABLE);
+        let least = (self.parameters.labels_min_aspect * width / view.cell) as usize;
+        blocked.open(0..view.size[0], least.max(1), closed, &[])
     }
 
     /// What some columns between two lines hold.

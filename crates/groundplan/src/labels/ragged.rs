@@ -184,28 +184,6 @@ impl<'a> Candidate<'a> {
         }
     }
 
-    /// The stretches of so many columns at least none of which is closed or a rival's.
-    fn open(&self, within: Range<usize>, least: usize, rivals: &[Range<usize>]) -> Vec<Range<usize>> {
-        let count = within.end;
-        let mut stretches = Vec::new();
-        let mut from = within.start;
-        while from + least <= count {
-            // From its far end, so that most columns are never asked.
-            let of_rival = |rival: &Range<usize>| (rival.start.max(from)..rival.end.min(from + least)).last();
-            let last = self.blocked.last(from..from + least, self.closed);
-            if let Some(last) = last.max(rivals.iter().filter_map(of_rival).max()) {
-                from = last + 1;
-                continue;
-            }
-            let ahead = |rival: &Range<usize>| (rival.start.max(from + least)..rival.end.min(count)).next();
-            let closed = self.blocked.first(from + least..count, self.closed);
-            let to = closed.into_iter().chain(rivals.iter().filter_map(ahead)).min().unwrap_or(count);
-            stretches.push(from..to);
-            from = to + 1;
-        }
-        stretches
-    }
-
     /// What the columns of a stretch are, where so many of them may be a way.
     fn columns(&self, stretch: &Range<usize>, by: Held, least: usize) -> Option<Columns> {
         let enough = |count: usize, share: f64| count as f64 >= share * least as f64;
@@ -264,7 +242,7 @@ impl<'a> Candidate<'a> {
         let rivals: Vec<Range<usize>> =
             rivals.iter().map(|rival| view.column(rival.along[0])..view.column(rival.along[1]) + 1).collect();
         let mut ways = Vec::new();
-        for stretch in self.open(within, least, &rivals) {
+        for stretch in self.blocked.open(within, least, self.closed, &rivals) {
             let Some(columns) = self.columns(&stretch, by, least) else { continue };
             let pieces = best_pieces(&columns.scores).into_iter().filter(|(from, to)| to - from >= least);
             ways.extend(pieces.filter(|&(from, to)| self.is_way(&columns, by, from..to, stretch.start)).map(

@@ -284,6 +284,28 @@ impl Shares<'_> {
         self.rows.last(columns, least)
     }
 
+    /// The stretches of so many columns at least in none of which so many samples are, and none of which is a rival's.
+    pub fn open(&self, within: Range<usize>, least: usize, closed: u32, rivals: &[Range<usize>]) -> Vec<Range<usize>> {
+        let count = within.end;
+        let mut stretches = Vec::new();
+        let mut from = within.start;
+        while from + least <= count {
+            // From its far end, so that most columns are never asked.
+            let of_rival = |rival: &Range<usize>| (rival.start.max(from)..rival.end.min(from + least)).last();
+            let last = self.last(from..from + least, closed);
+            if let Some(last) = last.max(rivals.iter().filter_map(of_rival).max()) {
+                from = last + 1;
+                continue;
+            }
+            let ahead = |rival: &Range<usize>| (rival.start.max(from + least)..rival.end.min(count)).next();
+            let next = self.first(from + least..count, closed);
+            let to = next.into_iter().chain(rivals.iter().filter_map(ahead)).min().unwrap_or(count);
+            stretches.push(from..to);
+            from = to + 1;
+        }
+        stretches
+    }
+
     /// The same of a range of columns.
     pub fn over(&self, columns: Range<usize>) -> Vec<u32> {
         self.rows.over(columns)
