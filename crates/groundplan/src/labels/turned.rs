@@ -101,8 +101,11 @@ impl Turned {
                 look.along(place((n * samples + j) as f64 + 0.5), steps[0], &mut lane);
                 sum.iter_mut().zip(&lane).for_each(|(sum, sample)| *sum += sample);
             }
-            for (cell, part) in row.iter_mut().zip(sum.chunks_exact(samples)) {
-                *cell = part.iter().sum();
+            // Of numbers that are known, so that many cells are added up at once.
+            match samples {
+                2 => row.iter_mut().zip(sum.chunks_exact(2)).for_each(|(cell, part)| *cell = part[0] + part[1]),
+                3 => row.iter_mut().zip(sum.chunks_exact(3)).for_each(|(cell, part)| *cell = part.iter().sum()),
+                _ => row.copy_from_slice(&sum),
             }
         })
     }

@@ -95,8 +95,10 @@ impl Raster {
     /// The pixel that holds a place, nothing outside.
     pub fn at(&self, [x, y]: [f64; 2]) -> Option<usize> {
         let (x, y) = (x + 0.5, y + 0.5);
-        let inside = x >= 0.0 && y >= 0.0 && (x as usize) < self.width && (y as usize) < self.height;
-        inside.then(|| y as usize * self.width + x as usize)
+        // By way of 32 bits, which is a step less for most machines.
+        let (column, row) = (x as u32 as usize, y as u32 as usize);
+        let inside = x >= 0.0 && y >= 0.0 && column < self.width && row < self.height;
+        inside.then(|| row * self.width + column)
     }
 
     /// The centre of a pixel.
