@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -60,6 +61,18 @@ def rooms_in_line() -> npt.NDArray[np.uint8]:
     return picture
 
 
+def aisle_past_a_hall() -> npt.NDArray[np.uint8]:
+    """A way of 14 m, a hall of 6.5 m by 7 m, and the way goes on for 15 m, 0.4 m off its line and a little wider."""
+    picture = np.full((180, 760), 205, np.uint8)
+    picture[18:162, 298:432] = 0
+    picture[58:112, 18:302] = 0
+    picture[64:122, 428:742] = 0
+    picture[60:110, 20:302] = 254
+    picture[66:120, 428:740] = 254
+    picture[20:160, 300:430] = 254
+    return picture
+
+
 @pytest.mark.parametrize("gap", [8, 14])
 def test_ways_between_rows_of_machines_are_aisles(gap: int) -> None:
     aisles = groundplan.survey(between_machines(gap), resolution=RESOLUTION).of_kind("corridor")
@@ -75,6 +88,28 @@ def test_niches_along_a_way_are_no_aisles_and_what_lies_between_is_no_rack() -> 
 
 def test_rooms_with_doors_in_line_are_no_aisle() -> None:
     assert not groundplan.survey(rooms_in_line(), resolution=RESOLUTION).of_kind("corridor")
+
+
+def test_an_aisle_that_goes_on_past_a_hall_is_one_aisle() -> None:
+    (aisle,) = groundplan.survey(aisle_past_a_hall(), resolution=RESOLUTION).of_kind("corridor")
+    assert np.hypot(*np.subtract(*aisle["axis"])) == pytest.approx(36.0, abs=0.5)
+
+
+def test_an_aisle_beyond_a_crossing_is_one_though_half_of_its_wall_was_seen(shared: Path) -> None:
+    survey = groundplan.survey(groundplan.read(shared / "maps" / "radish_intel_jones_farms.yaml"))
+    crossings = [label["at"] for label in survey.of_kind("junction") if label["type"] == "X"]
+    assert min(np.hypot(*np.subtract(at, (23.9, 33.4))) for at in crossings) < 0.5
+
+
+def between_racks(aisle: dict[str, Any]) -> bool:
+    (x, low), (_, high) = sorted(aisle["axis"], key=lambda end: float(end[1]))
+    return bool(abs(x) < 5 and low < -15 < high)
+
+
+def test_aisles_are_not_led_on_through_the_rows_that_stand_beyond_their_ends(shared: Path) -> None:
+    survey = groundplan.survey(groundplan.read(shared / "maps" / "tugbot_warehouse_shelves.yaml"))
+    ends = [sorted(end[1] for end in aisle["axis"]) for aisle in survey.of_kind("corridor") if between_racks(aisle)]
+    assert len(ends) == 2 and all(end == pytest.approx(-2.4, abs=0.5) for _, end in ends)
 
 
 @pytest.mark.parametrize(("name", "aisles", "racks"), [("radish_intel_jones_farms", 8, 0), ("textile_factory", 5, 0)])

@@ -104,8 +104,13 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
     // Each view shares its own work out among what threads are left.
     let threads = evidence.threads.div_ceil(views.len().max(1));
     let found = map_each(views.len(), evidence.threads, |n| {
-        let known = along(evidence, views, &views[n], threads);
+        let family = Family::new(evidence, views, &views[n]);
+        let (whole, parts): (Vec<_>, Vec<_>) = family.candidates(threads).into_iter().partition(|c| c.is_corridor);
+        let mut known = family.best(whole, &[]);
         let ragged = ragged::find(views, &views[n], evidence.parameters, &known, threads);
+        // What is no corridor as a whole may be one without what others have of it.
+        known.extend(family.best(parts, &[&known[..], &ragged].concat()));
+        known.sort_by(|a, b| a.middle().total_cmp(&b.middle()).then(a.along[0].total_cmp(&b.along[0])));
         (known, ragged)
     });
     let (known, ragged): (Vec<_>, Vec<_>) = found.into_iter().unzip();
@@ -127,26 +132,6 @@ fn is_askew_in(views: &[Turned], one: &Strip, other: &Strip) -> bool {
         && libm::sin(own.angle - its.angle).abs() < ASKEW
         && (other.along[0]..=other.along[1]).contains(&u)
         && (other.across[0]..=other.across[1]).contains(&v)
-}
-
-fn along(evidence: &Evidence, views: &[Turned], view: &Turned, threads: usize) -> Vec<Strip> {
-    let family = Family::new(evidence, views, view);
-    let mut candidates = family.candidates(threads);
-    candidates.sort_by(|a, b| b.strip.score.total_cmp(&a.strip.score));
-    let mut kept: Vec<Strip> = Vec::new();
-    for candidate in candidates {
-        let (first, last) = family.range(&candidate.strip);
-        let left = family.left(&candidate.strip, &kept);
-        if !left.is_empty() {
-            let columns = family.columns(candidate.sides, first..last);
-            for range in left {
-                let own = &columns[range.start - first..range.end - first];
-                kept.extend(family.strips(own, range.start, candidate.strip.across));
-            }
-        }
-    }
-    kept.sort_by(|a, b| a.middle().total_cmp(&b.middle()).then(a.along[0].total_cmp(&b.along[0])));
-    kept
 }
 
 /// Between the lines of posts of the rows that cross a direction, metres.
@@ -174,6 +159,8 @@ struct Family<'a> {
 struct Candidate {
     strip: Strip,
     sides: [usize; 2],
+    /// As a whole.
+    is_corridor: bool,
 }
 
 impl<'a> Family<'a> {
@@ -203,8 +190,9 @@ impl<'a> Family<'a> {
                 if width >= self.parameters.labels_min_width {
                     let sides = [low, high];
                     for open in self.open(across) {
-                        let strips = self.strips(&self.columns(sides, open.clone()), open.start, across);
-                        found.extend(strips.into_iter().map(|strip| Candidate { strip, sides }));
+                        let columns = self.columns(sides, open.clone());
+                        let pieces = self.pieces(&columns, open.start, across).into_iter();
+                        found.extend(pieces.map(|(strip, is_corridor)| Candidate { strip, sides, is_corridor }));
                     }
                 }
             }
@@ -221,6 +209,24 @@ impl<'a> Family<'a> {
         let closed = blocked.least(|share| share > IMPASSABLE);
         let least = (self.parameters.labels_min_aspect * width / view.cell) as usize;
         blocked.open(0..view.size[0], least.max(1), closed, &[])
+    }
+
+    /// Of rivals the best, and what they and those that are known leave of the others.
+    fn best(&self, mut candidates: Vec<Candidate>, known: &[Strip]) -> Vec<Strip> {
+        candidates.sort_by(|a, b| b.strip.score.total_cmp(&a.strip.score));
+        let mut kept = known.to_vec();
+        for candidate in candidates {
+            let (first, last) = self.range(&candidate.strip);
+            let left = self.left(&candidate.strip, &kept);
+            if !left.is_empty() {
+                let columns = self.columns(candidate.sides, first..last);
+                for range in left {
+                    let own = &columns[range.start - first..range.end - first];
+                    kept.extend(self.strips(own, range.start, candidate.strip.across));
+                }
+            }
+        }
+        kept.split_off(known.len())
     }
 
     /// What some columns between two lines hold.
@@ -297,6 +303,12 @@ impl<'a> Family<'a> {
     /// The corridors among a strip's columns, of which the first is given: the pieces in which what speaks for a
     /// corridor outweighs what speaks against it, each as long as that holds.
     fn strips(&self, columns: &[Column], first: usize, across: [f64; 2]) -> Vec<Strip> {
+        let pieces = self.pieces(columns, first, across).into_iter();
+        pieces.filter(|(_, is_corridor)| *is_corridor).map(|(strip, _)| strip).collect()
+    }
+
+    /// The same of all pieces that are long enough, and which of them are corridors.
+    fn pieces(&self, columns: &[Column], first: usize, across: [f64; 2]) -> Vec<(Strip, bool)> {
         let scores: Vec<f64> = columns.iter().map(|c| c.score()).collect();
         let pieces = best_pieces(&scores).into_iter();
         let view = self.view;
@@ -306,10 +318,14 @@ impl<'a> Family<'a> {
             across,
             score: scores[from..to].iter().sum::<f64>() * view.cell,
         };
-        pieces.filter(|&(from, to)| self.is_corridor(&columns[from..to], across[1] - across[0])).map(strip).collect()
+        let width = across[1] - across[0];
+        let long =
+            |(from, to): &(usize, usize)| (to - from) as f64 * view.cell >= self.parameters.labels_min_aspect * width;
+        let judged = |(from, to)| (strip((from, to)), self.is_corridor(&columns[from..to], width));
+        pieces.filter(long).map(judged).collect()
     }
 
-    /// Long enough, walled enough, and walled by more than posts.
+    /// Walled enough, and by more than posts.
     fn is_corridor(&self, columns: &[Column], width: f64) -> bool {
         let count = |is: &dyn Fn(&Column) -> bool| columns.iter().filter(|c| is(c)).count() as f64;
         let near = count(&|c| c.walled && c.near);
@@ -338,9 +354,7 @@ impl<'a> Family<'a> {
             faced(1) >= FACED * near && (faced(2) >= FACED_TWICE * near || faced(1) >= FACED_ONCE * near)
         };
         let walled = count(&|c| c.walled && c.blocked < NARROWED);
-        structured
-            && length >= self.parameters.labels_min_aspect * width
-            && walled >= LEAST_WALLED * columns.len() as f64
+        structured && walled >= LEAST_WALLED * columns.len() as f64
     }
 }
 

@@ -21,6 +21,19 @@ pub struct Meeting {
     pub reach: [f64; 2],
     /// Headings of the ways out, radians in the map frame.
     ways: Vec<f64>,
+    /// What each of the first two corridors does here.
+    legs: [Leg; 2],
+}
+
+/// What a corridor does at a junction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Leg {
+    /// How far beyond each of its ends the middle lies, metres; less than nothing within.
+    beyond: [f64; 2],
+    /// It ends here, on which sides.
+    ends: [bool; 2],
+    /// Nothing stands in the way from its end to here.
+    is_clear: bool,
 }
 
 /// A corridor goes on beyond a junction when it does so for this long, metres, and where a wall ends it, for this share
@@ -30,6 +43,10 @@ const ARM: (f64, f64) = (1.6, 0.65);
 const MARGIN: f64 = 0.2;
 /// A corridor that ends this far short of another still meets it, metres, when the way between is free.
 const SHORT: f64 = 6.0;
+/// Nothing stands in the way where no more than this share of a column is not free, without so much at the sides,
+/// metres.
+const CLUTTER: f64 = 0.33;
+const SIDE: f64 = 0.2;
 /// Corridors whose directions have an angle of a smaller sine do not meet.
 const LEAST_SINE: f64 = 0.1;
 /// Junctions nearer than this are one, metres.
@@ -49,24 +66,26 @@ pub fn find(views: &[Turned], strips: &[Strip]) -> Vec<Meeting> {
         .map(|s| views[s.direction].rectangle([s.along[0] - near, s.along[1] + near], [s.middle(); 2]))
         .collect();
     let beside = Near::polygons(&lines);
+    let mut met: Vec<Meeting> = Vec::new();
+    for a in 0..strips.len() {
+        let others = beside.beside(&lines[a]).into_iter().map(|b| b as usize).filter(|b| *b > a);
+        let others = others.filter(|b| strips[a].direction != strips[*b].direction);
+        met.extend(others.filter_map(|b| meet(views, strips, [a, b])));
+    }
+    let nearest = nearest(&met, strips.len());
+    met.retain(|meeting| meeting.is_led_to(&nearest));
     let mut found: Vec<Meeting> = Vec::new();
     let mut places: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
-    for a in 0..strips.len() {
-        for b in beside.beside(&lines[a]).into_iter().map(|b| b as usize).filter(|b| *b > a) {
-            if strips[a].direction == strips[b].direction {
-                continue;
-            }
-            let Some(meeting) = meet(views, strips, [a, b]) else { continue };
-            // A passage that goes on where an aisle ends is another corridor, but the junction is one.
-            let [x, y] = meeting.at.map(|c| (c / SAME).floor() as i64);
-            let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
-            let known = around.filter_map(|place| places.get(&place)).flatten();
-            if let Some(&other) = known.filter(|n| distance(found[**n].at, meeting.at) <= SAME).min() {
-                found[other].join(meeting);
-            } else {
-                places.entry([x, y]).or_default().push(found.len());
-                found.push(meeting);
-            }
+    for meeting in met {
+        // A passage that goes on where an aisle ends is another corridor, but the junction is one.
+        let [x, y] = meeting.at.map(|c| (c / SAME).floor() as i64);
+        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
+        let known = around.filter_map(|place| places.get(&place)).flatten();
+        if let Some(&other) = known.filter(|n| distance(found[**n].at, meeting.at) <= SAME).min() {
+            found[other].join(meeting);
+        } else {
+            places.entry([x, y]).or_default().push(found.len());
+            found.push(meeting);
         }
     }
     found.retain_mut(|meeting| match kind(&meeting.ways) {
@@ -88,7 +107,30 @@ pub fn of_each(meetings: &[Meeting], corridors: usize) -> Vec<Vec<usize>> {
     found
 }
 
+/// How far beyond each of its ends each of so many corridors is led on, metres, to the first junction there: nowhere
+/// where it ends in one already.
+fn nearest(met: &[Meeting], corridors: usize) -> Vec<[f64; 2]> {
+    let mut nearest = vec![[f64::INFINITY; 2]; corridors];
+    for meeting in met {
+        for (&corridor, leg) in meeting.corridors.iter().zip(&meeting.legs) {
+            for (to, (ends, beyond)) in nearest[corridor].iter_mut().zip(leg.ends.iter().zip(leg.beyond)) {
+                if *ends {
+                    *to = to.min(beyond.max(0.0));
+                }
+            }
+        }
+    }
+    nearest
+}
+
 impl Meeting {
+    /// True when neither corridor is led on past another junction to this one by way of what stands there.
+    fn is_led_to(&self, nearest: &[[f64; 2]]) -> bool {
+        self.corridors.iter().zip(&self.legs).all(|(&corridor, leg)| {
+            leg.is_clear || (0..2).all(|side| leg.beyond[side] <= nearest[corridor][side] + SAME)
+        })
+    }
+
     fn join(&mut self, other: Self) {
         for way in other.ways {
             if self.ways.iter().all(|own| turned(own - way).abs() > SAME_WAY_DEG.to_radians()) {
@@ -136,6 +178,7 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
     let at = [(m1 * c2 - m2 * c1) / sine, (m1 * s2 - m2 * s1) / sine];
     let mut ways = Vec::new();
     let mut reach = [0.0; 2];
+    let mut legs = [Leg { beyond: [0.0; 2], ends: [false; 2], is_clear: true }; 2];
     for (n, (strip, other, view)) in [(one, two, first), (two, one, second)].into_iter().enumerate() {
         let u = view.place(at)[0];
         reach[n] = other.width() / 2.0 / sine.abs();
@@ -156,18 +199,23 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
         if view.some_closed(columns.clone(), low, high).contains(&true) {
             return None;
         }
+        let sides = [strip.across[0] + SIDE, strip.across[1] - SIDE];
+        let blocked = view.some_blocked(columns.clone(), sides[0], sides[1]);
+        legs[n].is_clear = from == to || blocked.into_iter().all(|blocked| blocked <= CLUTTER);
         let has_door = barriers::across(view, strip.across, columns.clone()).contains(&true);
         if has_door || !barriers::stops(view, strip.across, columns).is_empty() {
             return None;
         }
+        legs[n].beyond = [strip.along[0] - u, u - strip.along[1]];
         for (side, heading) in [(0, view.angle + std::f64::consts::PI), (1, view.angle)] {
-            let beyond = if side == 0 { u - strip.along[0] } else { strip.along[1] - u };
-            if goes_on(view, strip, side, beyond - reach[n]) {
+            if goes_on(view, strip, side, -legs[n].beyond[side] - reach[n]) {
                 ways.push(heading);
+            } else {
+                legs[n].ends[side] = true;
             }
         }
     }
-    Some(Meeting { kind: JunctionKind::X, at, corridors: pair.to_vec(), reach, ways })
+    Some(Meeting { kind: JunctionKind::X, at, corridors: pair.to_vec(), reach, ways, legs })
 }
 
 /// A corridor's end is looked for so far beyond its walls, metres.

@@ -5,6 +5,7 @@ mod bays;
 mod confidence;
 mod corridors;
 mod gates;
+mod joined;
 mod junctions;
 mod look;
 mod names;

@@ -3,6 +3,7 @@
 
 use super::corridors::{self, Strip};
 use super::gates;
+use super::joined;
 use super::junctions::{self, Meeting};
 use super::racks::{self, Row};
 use super::rooms::{Bar, Space};
@@ -41,7 +42,8 @@ impl Sketch {
         // Each view shares its own work out among what threads are left.
         let own = Evidence { threads: evidence.threads / count.max(1), ..*evidence };
         let views = map_each(count, evidence.threads, |d| Turned::new(&own, &look, d));
-        let found = gates::without_bays(evidence, &look, &views, corridors::find(evidence, &views));
+        let found = joined::join(&views, corridors::find(evidence, &views));
+        let found = gates::without_bays(evidence, &look, &views, found);
         let mut plan = Plan::new(&views, found);
         let gates = gates::find(evidence, &look, &views, &plan.strips, &plan.rows);
         if !gates.is_empty() {

@@ -1,0 +1,83 @@
+//! Pieces of one way: in line, and with nothing in the way from one to the next.
+
+use super::barriers;
+use super::corridors::Strip;
+use super::turned::Turned;
+use crate::sets::Sets;
+
+/// Pieces share so much of the narrower one's width, which is so much of the wider one's.
+const SHARED: f64 = 0.7;
+const ALIKE: f64 = 0.7;
+/// No two are further apart than so many of the widths that they share, nor than the shorter one is long.
+const APART: f64 = 3.0;
+/// Between them the floor is free but for this share.
+const CLUTTER: f64 = 0.1;
+/// What stands so near to the sides, in widths, does not bar the way.
+const MARGIN: f64 = 0.1;
+
+/// The ways, and in place of pieces of one the whole.
+pub fn join(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
+    let mut order: Vec<usize> = (0..strips.len()).collect();
+    let place = |n: usize| (strips[n].direction, strips[n].across[0]);
+    order.sort_by(|&a, &b| place(a).0.cmp(&place(b).0).then(place(a).1.total_cmp(&place(b).1)));
+    let mut pairs = Vec::new();
+    for (n, &a) in order.iter().enumerate() {
+        let (direction, high) = (strips[a].direction, strips[a].across[1]);
+        let beside = order[n + 1..].iter().take_while(|&&b| place(b).0 == direction && place(b).1 < high);
+        pairs.extend(beside.flat_map(|&b| [(a, b), (b, a)]).filter(|&(a, b)| is_one(views, &strips, a, b)));
+    }
+    let gap = |&(a, b): &(usize, usize)| strips[b].along[0] - strips[a].along[1];
+    pairs.sort_by(|p, q| gap(p).total_cmp(&gap(q)).then(p.cmp(q)));
+    let mut wholes = Sets::new(strips.len());
+    for (a, b) in pairs {
+        let [a, b] = [a, b].map(|n| wholes.of(n as u32) as usize);
+        if is_one(views, &strips, a, b) {
+            let across = shared(&strips[a], &strips[b]);
+            let (along, score) = ([strips[a].along[0], strips[b].along[1]], strips[a].score + strips[b].score);
+            strips[a] = Strip { direction: strips[a].direction, along, across, score };
+            wholes.join(a as u32, b as u32);
+        }
+    }
+    let kept: Vec<bool> = (0..strips.len()).map(|n| wholes.of(n as u32) as usize == n).collect();
+    let mut kept = kept.into_iter();
+    strips.retain(|_| kept.next().unwrap_or(false));
+    strips
+}
+
+/// What two strips share, across.
+fn shared(one: &Strip, two: &Strip) -> [f64; 2] {
+    [one.across[0].max(two.across[0]), one.across[1].min(two.across[1])]
+}
+
+/// True when the way along one strip goes on as another, the next one.
+fn is_one(views: &[Turned], strips: &[Strip], a: usize, b: usize) -> bool {
+    let (one, two) = (&strips[a], &strips[b]);
+    let between = [one.along[1], two.along[0]];
+    let gap = between[1] - between[0];
+    if a == b || one.direction != two.direction || gap < -1e-6 || gap > one.length().min(two.length()) {
+        return false;
+    }
+    let [low, high] = shared(one, two);
+    let (narrow, wide) = (one.width().min(two.width()), one.width().max(two.width()));
+    if high - low < SHARED * narrow || narrow < ALIKE * wide || gap > APART * (high - low) {
+        return false;
+    }
+    let is_between = |other: &Strip| {
+        other.direction == one.direction
+            && other.along[0].max(between[0]) < other.along[1].min(between[1])
+            && other.across[0].max(low) < other.across[1].min(high)
+    };
+    if strips.iter().any(is_between) {
+        return false;
+    }
+    let view = &views[one.direction];
+    let margin = MARGIN * (high - low);
+    let [from, to] = between.map(|u| view.column(u));
+    let columns = from.saturating_sub(1)..to + 1;
+    let blocked = view.some_blocked(columns.clone(), low + margin, high - margin);
+    let clutter = blocked.iter().sum::<f64>() / blocked.len().max(1) as f64;
+    clutter <= CLUTTER
+        && !view.some_closed(columns.clone(), low + margin, high - margin).contains(&true)
+        && !barriers::among(view, [low, high], columns.clone()).contains(&true)
+        && barriers::stops(view, [low, high], columns).is_empty()
+}
