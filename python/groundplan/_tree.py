@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from groundplan._format import FORMAT, VERSION
 from groundplan._results import (
+    NONE,
     STATES,
     Adjacency,
     Directions,
@@ -59,7 +60,10 @@ class Table:
 
 def parts(survey: Survey) -> dict[str, Any]:
     """The parts of a survey as the format has them, plain or as a `Table`, in the order in which they are written."""
-    cut, measured, walls, dual = survey.subdivision, survey.occupancy, survey.walls, survey.adjacency
+    cut, measured, walls = survey.subdivision, survey.occupancy, survey.walls
+    dual: Adjacency | None = survey.__dict__.get("adjacency")
+    # What is not made yet need not be: links are the edges between two faces.
+    inner = np.flatnonzero((cut.edge_faces != NONE).all(axis=1)).astype(np.uint32) if dual is None else dual.edges
     source = {} if survey.source is None else {"source": {"file": survey.source, "reading": survey.reading}}
 
     def edges(some: slice) -> list[Any]:
@@ -87,7 +91,9 @@ def parts(survey: Survey) -> dict[str, Any]:
         )
 
     def links(some: slice) -> list[Any]:
-        return rows(faces=dual.faces[some], edge=dual.edges[some], connected=dual.connected[some])
+        if dual is not None:
+            return rows(faces=dual.faces[some], edge=dual.edges[some], connected=dual.connected[some])
+        return rows(faces=cut.edge_faces[inner[some]], edge=inner[some], connected=~walls.cogent[inner[some]])
 
     def traced(some: slice) -> list[Any]:
         kinds = ["freestanding" if free else "separating" for free in walls.freestanding[some].tolist()]
@@ -109,9 +115,9 @@ def parts(survey: Survey) -> dict[str, Any]:
         "vertices": Table(len(cut.vertices), lambda some: cut.vertices[some].tolist()),
         "edges": Table(len(cut.edge_lines), edges),
         "faces": Table(len(cut.areas), faces),
-        "links": Table(len(dual), links),
+        "links": Table(len(inner), links),
         "walls": Table(len(walls), traced),
-        "labels": survey._some_labels,
+        "labels": survey._label_table(),
         "patterns": survey.patterns,
         "warnings": [{"code": w.code, "message": w.message} for w in survey.warnings],
         "evidence": {

@@ -31,6 +31,7 @@ from groundplan._results import (
     Stage,
     Subdivision,
     Walls,
+    record,
 )
 from groundplan._tree import RECORDS, Table, from_tree, to_tree, written
 from groundplan.maps import Map, MapWarning, from_array
@@ -40,6 +41,9 @@ from groundplan.stages import cores, layout, made, run, taken
 
 if TYPE_CHECKING:
     import networkx
+
+#: In place of what is made when it is asked for.
+NOT_YET: Any = None
 
 #: What is taken for many coordinates and not for one.
 _MANY = (np.ndarray, list, tuple)
@@ -89,7 +93,7 @@ class Survey(Stage):
         return (
             f"Survey({info.image!r}, {info.width} x {info.height} pixels of {info.resolution:g} m: "
             f"{len(self.directions)} directions, {len(self.lines)} lines, {len(cut.areas)} faces, "
-            f"{len(self.walls)} walls, {self._some_labels.count} labels, {len(self.warnings)} warnings)"
+            f"{len(self.walls)} walls, {self._label_table().count} labels, {len(self.warnings)} warnings)"
         )
 
     def problems(self) -> list[str]:
@@ -124,17 +128,16 @@ class Survey(Stage):
             later = self.__dict__.get("_later", {})
             if name not in later:
                 raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-            return self.__dict__.setdefault(name, later[name].some(slice(None)))
+            return self.__dict__.setdefault(name, later[name]())
 
-    @property
-    def _some_labels(self) -> Table:
+    def _label_table(self) -> Table:
         """The labels, of which some can be had without making all."""
         labels: list[Label] | None = self.__dict__.get("labels")
-        return self.__dict__["_later"]["labels"] if labels is None else Table(len(labels), labels.__getitem__)
+        return self.__dict__["_some_labels"] if labels is None else Table(len(labels), labels.__getitem__)
 
     def _each_label(self) -> Iterator[Label]:
         """The labels one after another, none of them kept."""
-        found = self._some_labels
+        found = self._label_table()
         for first in range(0, found.count, RECORDS):
             yield from found.some(slice(first, first + RECORDS))
 
@@ -431,13 +434,13 @@ def surveyed(
         "subdivision": Subdivision,
         "occupancy": Occupancy,
         "walls": Walls,
-        "adjacency": Adjacency,
     }
     survey = Survey(
         map=MapInfo(map.image, map.width, map.height, map.resolution, map.origin),
         parameters=resolve(parameters),
         radiograms=[made(Radiogram, arrays) for arrays in found["radiograms"]],
-        labels=[],
+        adjacency=NOT_YET,
+        labels=NOT_YET,
         patterns=found["patterns"],
         warnings=[*map.warnings, *(MapWarning(code, message) for code, message in found["warnings"])],
         **{name: made(kind, found[name]) for name, kind in stages.items()},
@@ -445,8 +448,15 @@ def surveyed(
     # For its routes and its updates, and no part of what it is.
     survey.__dict__.update(_map=map, _own=own, _gradients=found["gradients"])
     labels: _core.Labels = found["labels"]
-    survey.__dict__["_later"] = {"labels": Table(len(labels), lambda some: labels.some(*some.indices(len(labels))[:2]))}
-    del survey.__dict__["labels"]
+    some = Table(len(labels), lambda some: labels.some(*some.indices(len(labels))[:2]))
+    cut, walls = survey.subdivision, survey.walls
+    survey.__dict__["_some_labels"] = some
+    survey.__dict__["_later"] = {
+        "labels": lambda: some.some(slice(None)),
+        "adjacency": lambda: made(Adjacency, _core.find_adjacency(record(cut), record(walls))),
+    }
+    for name in survey.__dict__["_later"]:
+        del survey.__dict__[name]
     return survey
 
 

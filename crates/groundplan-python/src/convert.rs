@@ -200,6 +200,7 @@ pub fn given(dict: &Bound<'_, PyDict>, frame: &Frame) -> PyResult<Given> {
         directions: record("directions")?.as_ref().map(directions).transpose()?,
         lines: record("lines")?.as_ref().map(lines).transpose()?,
         sums: dict.get_item("sums")?.as_ref().map(sums).transpose()?,
+        keep: false,
     };
     if let Some(lines) = &given.lines {
         let none = Directions::default();
@@ -402,13 +403,24 @@ pub fn from_subdivision(py: Python<'_>, made: Subdivision) -> PyResult<Bound<'_,
         .done())
 }
 
-pub fn subdivision(dict: &Bound<'_, PyDict>) -> PyResult<Subdivision> {
+fn edge_faces(dict: &Bound<'_, PyDict>) -> PyResult<Vec<[u32; 2]>> {
     let sides: Vec<[i32; 2]> = pairs(dict, "edge_faces")?;
+    Ok(sides.into_iter().map(|f| f.map(|f| u32::try_from(f).unwrap_or(NONE))).collect())
+}
+
+/// The two faces of each edge, and whether it is cogent.
+pub fn edges(subdivision: &Bound<'_, PyDict>, walls: &Bound<'_, PyDict>) -> PyResult<(Vec<[u32; 2]>, Vec<bool>)> {
+    let (faces, cogent) = (edge_faces(subdivision)?, list(walls, "cogent")?);
+    demand(faces.len() == cogent.len(), "the faces or edges are not those of this subdivision")?;
+    Ok((faces, cogent))
+}
+
+pub fn subdivision(dict: &Bound<'_, PyDict>) -> PyResult<Subdivision> {
     Ok(Subdivision {
         vertices: pairs(dict, "vertices")?,
         edge_vertices: pairs(dict, "edge_vertices")?,
         edge_lines: unsigned(&list::<i32>(dict, "edge_lines")?),
-        edge_faces: sides.into_iter().map(|f| f.map(|f| u32::try_from(f).unwrap_or(NONE))).collect(),
+        edge_faces: edge_faces(dict)?,
         face_vertices: list(dict, "face_vertices")?,
         face_edges: list(dict, "face_edges")?,
         face_offsets: list(dict, "face_offsets")?,

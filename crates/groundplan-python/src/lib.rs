@@ -15,8 +15,8 @@ mod _core {
     use crate::labels::Labels;
     #[pymodule_export]
     use crate::queries::{Locator, Ways};
+    use groundplan::{Given, subdivision::Subdivision, sums::FaceSums, walls};
     use groundplan::{TABLE, adjacency, arrangement, directions, gradients, labels, lines, occupancy, radiograms};
-    use groundplan::{subdivision::Subdivision, sums::FaceSums, walls};
     use numpy::PyArray2;
     use pyo3::prelude::*;
     use pyo3::types::PyDict;
@@ -50,7 +50,7 @@ mod _core {
         keep: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let parameters = convert::parameters(parameters)?;
-        let given = convert::given(given, &layout.frame())?;
+        let given = Given { keep, ..convert::given(given, &layout.frame())? };
         let made = layout.with_grid(py, |grid| groundplan::survey(grid, &parameters, given, threads))?;
         let gradients = keep.then_some(made.gradients).map(|kept| convert::from_gradients(py, kept)).transpose()?;
         Ok(Named::new(py)
@@ -61,7 +61,6 @@ mod _core {
             .with("subdivision", convert::from_subdivision(py, made.subdivision)?)?
             .with("occupancy", convert::from_occupancy(py, made.occupancy)?)?
             .with("walls", convert::from_walls(py, made.walls)?)?
-            .with("adjacency", convert::from_adjacency(py, made.adjacency)?)?
             .with("labels", Py::new(py, Labels::new(made.labels, made.confidence))?)?
             .with("patterns", convert::from_patterns(py, &made.patterns)?)?
             .with("warnings", made.warnings.into_iter().map(|w| (w.code, w.message)).collect::<Vec<_>>())?
@@ -240,9 +239,8 @@ mod _core {
         subdivision: &Bound<'py, PyDict>,
         walls: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (subdivision, walls) = (convert::subdivision(subdivision)?, convert::walls(walls)?);
-        convert::demand_subdivision(&subdivision, subdivision.faces(), walls.cogent.len())?;
-        convert::from_adjacency(py, adjacency::find_adjacency(&subdivision, &walls))
+        let (edge_faces, cogent) = convert::edges(subdivision, walls)?;
+        convert::from_adjacency(py, adjacency::find_adjacency(&edge_faces, &cogent))
     }
 
     /// II-E: what is what.
@@ -266,7 +264,7 @@ mod _core {
         let (occupancy, walls) = (convert::occupancy(occupancy)?, convert::walls(walls)?);
         let states = occupancy.states.len().min(occupancy.faces.len());
         convert::demand_subdivision(&subdivision, states, occupancy.edges.len().min(walls.cogent.len()))?;
-        let adjacency = adjacency::find_adjacency(&subdivision, &walls);
+        let adjacency = adjacency::find_adjacency(&subdivision.edge_faces, &walls.cogent);
         let (made, confidence) = layout.with_grid(py, |grid| {
             let evidence = labels::Evidence {
                 grid,

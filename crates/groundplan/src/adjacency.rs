@@ -1,8 +1,6 @@
 //! II-D, II-E: the dual. A node for each face, at its centre; a link for each edge between two faces.
 
 use crate::arrangement::NONE;
-use crate::subdivision::Subdivision;
-use crate::walls::Walls;
 
 /// The adjacency graph: D(face) = node, D(edge) = link.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,15 +13,15 @@ pub struct Adjacency {
     pub connected: Vec<bool>,
 }
 
-/// The dual of the subdivision.
+/// The dual of a subdivision, from the two faces of each of its edges and whether the edge is cogent.
 #[must_use]
-pub fn find_adjacency(subdivision: &Subdivision, walls: &Walls) -> Adjacency {
+pub fn find_adjacency(edge_faces: &[[u32; 2]], cogent: &[bool]) -> Adjacency {
     let mut made = Adjacency::default();
-    for (edge, &faces) in subdivision.edge_faces.iter().enumerate() {
+    for (edge, (&faces, cogent)) in edge_faces.iter().zip(cogent).enumerate() {
         if !faces.contains(&NONE) {
             made.faces.push(faces);
             made.edges.push(edge as u32);
-            made.connected.push(!walls.cogent[edge]);
+            made.connected.push(!cogent);
         }
     }
     made

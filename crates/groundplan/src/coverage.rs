@@ -23,64 +23,105 @@ pub struct Covered {
     pub offsets: Vec<u32>,
 }
 
-/// O(edge): the edge pixels that lie on each line mark the parts of its length that they cover.
-pub fn cover_edges(
-    frame: &Frame,
-    arrangement: &Arrangement,
-    directions: &Directions,
-    lines: &Lines,
-    gradients: &Gradients,
-    parameters: &Parameters,
-) -> Covered {
-    let tolerance = parameters.radiograms_tolerance_deg.to_radians();
-    let mut shares = vec![0.0; arrangement.edges.len()];
-    let mut by_line: Vec<Vec<(u32, [f64; 2])>> = vec![Vec::new(); lines.len()];
-    for (direction, &angle) in directions.angles.iter().enumerate() {
-        let angle = frame.angle_to_grid(angle);
-        let (cos, sin) = (libm::cos(angle), libm::sin(angle));
-        let mut members: Vec<(f64, f64, usize)> = (0..lines.len())
-            .filter(|&n| lines.directions[n] as usize == direction && !arrangement.line_edges[n].is_empty())
-            .map(|n| {
-                let line = arrangement.lines[n];
-                let scale = (((line.a as f64).powi(2)) + (line.b as f64).powi(2)).sqrt();
-                let reach = (lines.widths[n] / frame.resolution).clamp(NEAREST_PIXELS, FARTHEST_PIXELS);
-                (line.c as f64 / scale, reach, n)
-            })
-            .collect();
-        members.sort_by(|p, q| p.0.total_cmp(&q.0));
-        let diagonal = (frame.width + frame.height) as f64;
-        let span = 2 * diagonal.ceil() as usize + 4;
-        let mut covered: Vec<Vec<u64>> = vec![Vec::new(); members.len()];
-        for ((pixel, &along), &magnitude) in gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes) {
-            if weight(f64::from(along), magnitude, angle, tolerance) == 0 {
-                continue;
-            }
-            let (x, y) = (f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
-            let offset = y * cos - x * sin;
-            let place = x * cos + y * sin + diagonal;
-            let first = members.partition_point(|m| m.0 < offset - FARTHEST_PIXELS);
-            for (m, member) in members.iter().enumerate().skip(first) {
-                if member.0 > offset + FARTHEST_PIXELS {
-                    break;
+/// The parts of each line's length that edge pixels cover which lie on it.
+pub struct Coverage<'a> {
+    frame: &'a Frame,
+    /// Places along a line are counted from so far before its middle, pixels.
+    diagonal: f64,
+    tolerance: f64,
+    families: Vec<Family>,
+}
+
+/// The lines of one direction, by their offsets.
+struct Family {
+    angle: f64,
+    heading: [f64; 2],
+    members: Vec<Member>,
+}
+
+struct Member {
+    offset: f64,
+    reach: f64,
+    line: usize,
+    /// What is covered, bit by bit; nothing until something is.
+    covered: Vec<u64>,
+}
+
+impl<'a> Coverage<'a> {
+    /// Of nothing yet.
+    pub fn new(
+        frame: &'a Frame,
+        arrangement: &Arrangement,
+        directions: &Directions,
+        lines: &Lines,
+        parameters: &Parameters,
+    ) -> Self {
+        let family = |(direction, &angle): (usize, &f64)| {
+            let angle = frame.angle_to_grid(angle);
+            let mut members: Vec<Member> = (0..lines.len())
+                .filter(|&n| lines.directions[n] as usize == direction && !arrangement.line_edges[n].is_empty())
+                .map(|n| {
+                    let line = arrangement.lines[n];
+                    let scale = (((line.a as f64).powi(2)) + (line.b as f64).powi(2)).sqrt();
+                    let reach = (lines.widths[n] / frame.resolution).clamp(NEAREST_PIXELS, FARTHEST_PIXELS);
+                    Member { offset: line.c as f64 / scale, reach, line: n, covered: Vec::new() }
+                })
+                .collect();
+            members.sort_by(|p, q| p.offset.total_cmp(&q.offset));
+            Family { angle, heading: [libm::cos(angle), libm::sin(angle)], members }
+        };
+        Self {
+            frame,
+            diagonal: (frame.width + frame.height) as f64,
+            tolerance: parameters.radiograms_tolerance_deg.to_radians(),
+            families: directions.angles.iter().enumerate().map(family).collect(),
+        }
+    }
+
+    /// With what some edge pixels cover.
+    pub fn add(&mut self, gradients: &Gradients) {
+        let span = 2 * self.diagonal.ceil() as usize + 4;
+        for Family { angle, heading: [cos, sin], members } in &mut self.families {
+            let all = gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes);
+            for ((pixel, &along), &magnitude) in all {
+                if weight(f64::from(along), magnitude, *angle, self.tolerance) == 0 {
+                    continue;
                 }
-                if (member.0 - offset).abs() <= member.1 {
-                    let bits = &mut covered[m];
-                    if bits.is_empty() {
-                        bits.resize(span.div_ceil(64), 0);
+                let (x, y) = (f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
+                let offset = y * *cos - x * *sin;
+                let place = x * *cos + y * *sin + self.diagonal;
+                let first = members.partition_point(|m| m.offset < offset - FARTHEST_PIXELS);
+                for member in &mut members[first..] {
+                    if member.offset > offset + FARTHEST_PIXELS {
+                        break;
                     }
-                    for bin in [place - COVER_PIXELS, place, place + COVER_PIXELS] {
-                        let bin = bin.max(0.0) as usize;
-                        bits[bin / 64] |= 1 << (bin % 64);
+                    if (member.offset - offset).abs() <= member.reach {
+                        let bits = &mut member.covered;
+                        if bits.is_empty() {
+                            bits.resize(span.div_ceil(64), 0);
+                        }
+                        for bin in [place - COVER_PIXELS, place, place + COVER_PIXELS] {
+                            let bin = bin.max(0.0) as usize;
+                            bits[bin / 64] |= 1 << (bin % 64);
+                        }
                     }
                 }
             }
         }
-        for (bits, member) in covered.iter().zip(&members) {
+    }
+
+    /// O(edge), and where on each edge it lies.
+    pub fn of_edges(self, arrangement: &Arrangement) -> Covered {
+        let Self { frame, diagonal, families, .. } = self;
+        let mut shares = vec![0.0; arrangement.edges.len()];
+        let mut by_line: Vec<Vec<(u32, [f64; 2])>> = vec![Vec::new(); arrangement.line_edges.len()];
+        for (heading, member) in families.into_iter().flat_map(|f| f.members.into_iter().map(move |m| (f.heading, m))) {
+            let ([cos, sin], bits) = (heading, &member.covered);
             if bits.is_empty() {
                 continue;
             }
             let sums = counts(bits);
-            for edge in arrangement.line_edges[member.2].clone() {
+            for edge in arrangement.line_edges[member.line].clone() {
                 let ends = arrangement.edges[edge as usize].map(|v| {
                     let [x, y] = arrangement.vertices[v as usize];
                     x * cos + y * sin + diagonal
@@ -104,7 +145,7 @@ pub fn cover_edges(
                     };
                     tidy((place - ends[0]).abs() * frame.resolution)
                 };
-                let found = &mut by_line[member.2];
+                let found = &mut by_line[member.line];
                 let before = found.len();
                 found.extend(runs(bits, first..last, true).map(|run| {
                     let (a, b) = (metres(run.start), metres(run.end));
@@ -115,14 +156,18 @@ pub fn cover_edges(
                 }
             }
         }
+        // The edges are numbered line after line.
+        let mut offsets = vec![0; arrangement.edges.len() + 1];
+        by_line.iter().flatten().for_each(|&(edge, _)| offsets[edge as usize + 1] += 1);
+        for edge in 1..offsets.len() {
+            offsets[edge] += offsets[edge - 1];
+        }
+        let mut runs = Vec::with_capacity(by_line.iter().map(Vec::len).sum());
+        for line in by_line {
+            runs.extend(line.into_iter().map(|(_, run)| run));
+        }
+        Covered { shares, runs, offsets }
     }
-    // The edges are numbered line after line.
-    let mut offsets = vec![0; arrangement.edges.len() + 1];
-    by_line.iter().flatten().for_each(|&(edge, _)| offsets[edge as usize + 1] += 1);
-    for edge in 1..offsets.len() {
-        offsets[edge] += offsets[edge - 1];
-    }
-    Covered { shares, runs: by_line.into_iter().flatten().map(|(_, run)| run).collect(), offsets }
 }
 
 /// Set bits before each word.

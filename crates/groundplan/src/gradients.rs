@@ -5,7 +5,7 @@
 //! scatter matrix of the edge pixels around it give the direction along the wall and the normal across it, and the
 //! eigenvalues' disparity is the gradient's magnitude. Sums of integers only, so nothing depends on the order.
 
-use crate::bands::map_bands;
+use crate::bands::{BAND_ROWS, map_bands};
 use crate::grid::{Grid, State, undirected};
 use crate::parameters::Parameters;
 use std::ops::Range;
@@ -21,10 +21,32 @@ pub struct Gradients {
     pub magnitudes: Vec<u8>,
 }
 
+/// Gradients of this magnitude or less are specks: posts, and the corners of goods.
+pub const SPECK: u8 = 100;
+
+impl Gradients {
+    /// Those that are specks.
+    #[must_use]
+    pub fn specks(&self) -> Self {
+        let mut specks = Self::default();
+        for ((pixel, angle), magnitude) in self.pixels.iter().zip(&self.angles).zip(&self.magnitudes) {
+            if *magnitude <= SPECK {
+                specks.pixels.push(*pixel);
+                specks.angles.push(*angle);
+                specks.magnitudes.push(*magnitude);
+            }
+        }
+        specks
+    }
+}
+
 /// Smallest window in which a staircase shows its slope, pixels.
 const MIN_RADIUS: usize = 7;
 /// Largest window, pixels; beyond it only time is lost.
 const MAX_RADIUS: usize = 32;
+
+/// Rows of which the gradients are found before they are put to the others.
+const TOGETHER: usize = 64 * BAND_ROWS;
 
 /// Radius of the window, pixels.
 fn radius(resolution: f64, parameters: &Parameters) -> usize {
@@ -61,23 +83,26 @@ pub fn find_gradients_in(
     let shifted = |band: Range<usize>, by: usize| band.start + by..band.end + by;
     let edges = map_bands(window.len(), threads, |band| edge_pixels(grid, shifted(band, window.start), &across));
     let edges = Edges { first: window.start, rows: edges.into_iter().flatten().collect() };
-    let parts = map_bands(rows.len(), threads, |band| {
-        let mut part = Gradients::default();
-        for y in shifted(band, rows.start) {
-            row_gradients(&edges, y, &columns, radius, &mut part);
-        }
-        part
-    });
-    drop(edges);
+    // Room for all at once, and of large maps no more than some bands beside it.
     let mut all = Gradients::default();
-    let count = parts.iter().map(|part| part.pixels.len()).sum();
+    let count = rows.clone().map(|y| edges.among(y, &columns).len()).sum();
     all.pixels.reserve_exact(count);
     all.angles.reserve_exact(count);
     all.magnitudes.reserve_exact(count);
-    for part in parts {
-        all.pixels.extend(part.pixels);
-        all.angles.extend(part.angles);
-        all.magnitudes.extend(part.magnitudes);
+    for first in rows.clone().step_by(TOGETHER) {
+        let some = first..rows.end.min(first + TOGETHER);
+        let parts = map_bands(some.len(), threads, |band| {
+            let mut part = Gradients::default();
+            for y in shifted(band, some.start) {
+                row_gradients(&edges, y, &columns, radius, &mut part);
+            }
+            part
+        });
+        for part in parts {
+            all.pixels.extend(part.pixels);
+            all.angles.extend(part.angles);
+            all.magnitudes.extend(part.magnitudes);
+        }
     }
     all
 }
@@ -86,6 +111,15 @@ pub fn find_gradients_in(
 struct Edges {
     first: usize,
     rows: Vec<Vec<u32>>,
+}
+
+impl Edges {
+    /// Those of a row that lie among some columns.
+    fn among(&self, y: usize, columns: &Range<usize>) -> &[u32] {
+        let own = &self.rows[y - self.first];
+        let from = own.partition_point(|&x| (x as usize) < columns.start);
+        &own[from..own.partition_point(|&x| (x as usize) < columns.end)]
+    }
 }
 
 /// Pixels that are looked at together.
@@ -129,9 +163,7 @@ fn edge_pixels(grid: &Grid, band: Range<usize>, among: &Range<usize>) -> Vec<Vec
 /// corners.
 fn row_gradients(edges: &Edges, y: usize, among: &Range<usize>, radius: usize, out: &mut Gradients) {
     let Edges { first, rows } = edges;
-    let own = &rows[y - first];
-    let own = &own[own.partition_point(|&x| (x as usize) < among.start)..];
-    let own = &own[..own.partition_point(|&x| (x as usize) < among.end)];
+    let own = edges.among(y, among);
     if own.is_empty() {
         return;
     }

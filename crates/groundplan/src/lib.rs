@@ -41,6 +41,7 @@ pub mod parameters;
 pub mod radiograms;
 pub mod route;
 mod sets;
+mod sparing;
 pub mod subdivision;
 pub mod sums;
 mod survey;
@@ -51,7 +52,7 @@ pub mod wavelets;
 pub use grid::{Frame, Grid, State, Table};
 pub use labels::{JunctionKind, Label};
 pub use parameters::{ParameterError, Parameters, TABLE, Value};
-pub use survey::{Given, Survey, Warning, survey};
+pub use survey::{Given, Survey, Warning, survey, survey_sparingly};
 
 /// The version of the method, and of all of Groundplan.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

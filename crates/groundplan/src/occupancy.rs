@@ -1,13 +1,13 @@
 //! II-D: O(face), by what the pixels add to it, and O(edge).
 
 use crate::arrangement::Arrangement;
-use crate::coverage::cover_edges;
+use crate::coverage::{Coverage, Covered};
 use crate::directions::Directions;
 use crate::gradients::Gradients;
 use crate::grid::{Frame, State, tidy};
 use crate::lines::Lines;
 use crate::parameters::Parameters;
-use crate::sums::{FaceSums, Sums};
+use crate::sums::FaceSums;
 
 /// What lies in the faces and on the edges.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,6 +32,35 @@ pub struct Occupancy {
 }
 
 impl Occupancy {
+    /// O(face), from what the pixels add to the faces; nothing of the edges yet.
+    pub(crate) fn of_faces(sums: &FaceSums) -> Self {
+        let share = |part: i64, of: i64| tidy(part as f64 / of as f64);
+        let faces: Vec<f64> = sums.evidence().map(|s| share(s.percent, 100 * s.pixels)).collect();
+        let unknown: Vec<f64> = sums.evidence().map(|s| share(s.unknown, s.pixels)).collect();
+        let state = |(&occupancy, &unknown): (&f64, &f64)| {
+            if unknown > 0.5 {
+                State::Unknown
+            } else if occupancy > OCCUPIED {
+                State::Occupied
+            } else {
+                State::Free
+            }
+        };
+        Self {
+            states: faces.iter().zip(&unknown).map(state).collect(),
+            faces,
+            unknown,
+            free: sums.evidence().map(|s| share(s.free, s.pixels)).collect(),
+            pixels: sums.within.iter().map(|s| s.pixels.unsigned_abs()).collect(),
+            ..Self::default()
+        }
+    }
+
+    /// And O(edge).
+    pub(crate) fn with(self, covered: Covered) -> Self {
+        Self { edges: covered.shares, runs: covered.runs, run_offsets: covered.offsets, ..self }
+    }
+
     /// The parts of an edge on which occupied pixels lie: from, to, metres from its first vertex.
     #[must_use]
     pub fn runs_of(&self, edge: usize) -> &[[f64; 2]] {
@@ -53,28 +82,7 @@ pub fn find_occupancy(
     gradients: &Gradients,
     parameters: &Parameters,
 ) -> Occupancy {
-    let evidence: Vec<Sums> = sums.evidence().collect();
-    let share = |part: i64, of: i64| tidy(part as f64 / of as f64);
-    let faces: Vec<f64> = evidence.iter().map(|s| share(s.percent, 100 * s.pixels)).collect();
-    let unknown: Vec<f64> = evidence.iter().map(|s| share(s.unknown, s.pixels)).collect();
-    let state = |(&occupancy, &unknown): (&f64, &f64)| {
-        if unknown > 0.5 {
-            State::Unknown
-        } else if occupancy > OCCUPIED {
-            State::Occupied
-        } else {
-            State::Free
-        }
-    };
-    let covered = cover_edges(frame, arrangement, directions, lines, gradients, parameters);
-    Occupancy {
-        states: faces.iter().zip(&unknown).map(state).collect(),
-        faces,
-        unknown,
-        free: evidence.iter().map(|s| share(s.free, s.pixels)).collect(),
-        pixels: sums.within.iter().map(|s| s.pixels.unsigned_abs()).collect(),
-        edges: covered.shares,
-        runs: covered.runs,
-        run_offsets: covered.offsets,
-    }
+    let mut coverage = Coverage::new(frame, arrangement, directions, lines, parameters);
+    coverage.add(gradients);
+    Occupancy::of_faces(sums).with(coverage.of_edges(arrangement))
 }

@@ -50,6 +50,12 @@ impl FaceSums {
         Self { within, under }
     }
 
+    /// True when they are of as many faces as there are.
+    #[must_use]
+    pub fn fits(&self, arrangement: &Arrangement) -> bool {
+        [&self.within, &self.under].iter().all(|part| part.len() == arrangement.face_count())
+    }
+
     /// What each face is judged by: its pixels, or where it has none the one under its middle.
     pub fn evidence(&self) -> impl Iterator<Item = Sums> + '_ {
         self.within.iter().zip(&self.under).map(|(within, under)| if within.pixels > 0 { *within } else { *under })

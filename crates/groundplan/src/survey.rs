@@ -13,6 +13,7 @@ use crate::lines::{Lines, find_lines};
 use crate::occupancy::{Occupancy, find_occupancy};
 use crate::parameters::{Method, Parameters};
 use crate::radiograms::{Radiogram, find_radiograms};
+use crate::sparing;
 use crate::subdivision::Subdivision;
 use crate::sums::FaceSums;
 use crate::walls::{Walls, find_walls};
@@ -43,8 +44,6 @@ pub struct Survey {
     pub occupancy: Occupancy,
     /// II-D: C(edge) and the abstraction.
     pub walls: Walls,
-    /// II-D: the dual.
-    pub adjacency: Adjacency,
     /// II-E: what is what.
     pub labels: Vec<Label>,
     /// How sure each label is, 0 to 1.
@@ -66,6 +65,8 @@ pub struct Given {
     pub lines: Option<Lines>,
     /// What the pixels add to the faces that these lines make.
     pub sums: Option<FaceSums>,
+    /// The gradients will be wanted again; where the map is large they are let go if not.
+    pub keep: bool,
 }
 
 /// Surveys a grid. Total: any grid and parameters give a valid subdivision, at worst one face, and warnings.
@@ -73,6 +74,9 @@ pub struct Given {
 pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> Survey {
     let frame = &grid.frame;
     let strips = parameters.labels_method == Method::Strips;
+    if strips && !given.keep && frame.width * frame.height > sparing::MANY {
+        return survey_sparingly(grid, parameters, given, threads);
+    }
     // What the labels need of the pixels alone, and then of the lines, is made beside the other stages.
     let mut survey = side_by_side(threads, |side| {
         let ground = strips.then(|| Ground::start(side, grid, threads));
@@ -95,7 +99,7 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
             let confidence = find_confidence(&evidence, &labels);
             (divided, labels, confidence)
         });
-        let Divided { subdivision, occupancy, walls, adjacency } = divided;
+        let Divided { subdivision, occupancy, walls, .. } = divided;
         let patterns = find_patterns(&directions, &labels);
         let warnings = Vec::new();
         Survey {
@@ -106,17 +110,24 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
             subdivision,
             occupancy,
             walls,
-            adjacency,
             labels,
             confidence,
             patterns,
             warnings,
         }
     });
-    survey.warnings = find_warnings(&survey, parameters);
-    survey.warnings.extend(undecided(&survey.labels, &survey.confidence));
+    survey.warnings = find_warnings(&survey, survey.gradients.pixels.len(), parameters);
     debug_assert_eq!(survey.subdivision.problems(), Vec::<String>::new());
     debug_assert_eq!(survey.occupancy.pixels.iter().sum::<u64>(), (grid.frame.width * grid.frame.height) as u64);
+    survey
+}
+
+/// The same with labels by strips, in far less memory and somewhat more time: one stage after another, and no gradients
+/// are kept. Maps of many pixels are surveyed so.
+#[must_use]
+pub fn survey_sparingly(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> Survey {
+    let (mut survey, edges) = sparing::survey(grid, parameters, given, threads);
+    survey.warnings = find_warnings(&survey, edges, parameters);
     survey
 }
 
@@ -133,14 +144,13 @@ impl Divided {
         let Evidence { grid, gradients, directions, lines, parameters, threads } = *evidence;
         let frame = &grid.frame;
         let arrangement = arrange(frame, &directions.angles, lines);
-        let faces = arrangement.face_count();
-        let fits = |sums: &FaceSums| [&sums.within, &sums.under].iter().all(|part| part.len() == faces);
+        let fits = |sums: &FaceSums| sums.fits(&arrangement);
         let sums = given.filter(fits).unwrap_or_else(|| FaceSums::new(grid, &arrangement, 0..frame.height, threads));
         let occupancy = find_occupancy(frame, &sums, &arrangement, directions, lines, gradients, parameters);
         drop(sums);
         let subdivision = Subdivision::new(frame, arrangement);
         let walls = find_walls(&subdivision, &occupancy, parameters);
-        let adjacency = find_adjacency(&subdivision, &walls);
+        let adjacency = find_adjacency(&subdivision.edge_faces, &walls.cogent);
         Self { subdivision, occupancy, walls, adjacency }
     }
 }
@@ -168,11 +178,10 @@ const LITTLE_EXPLAINED: f64 = 0.12;
 /// Two directions hold at least this much of what lines up, or it is not one ground plan.
 const PAIR_SHARE: f64 = 0.75;
 
-fn find_warnings(survey: &Survey, parameters: &Parameters) -> Vec<Warning> {
-    let Survey { gradients, directions, lines, labels, .. } = survey;
+fn find_warnings(survey: &Survey, edges: usize, parameters: &Parameters) -> Vec<Warning> {
+    let Survey { directions, lines, labels, .. } = survey;
     let mut warnings = Vec::new();
     let mut warn = |code, message| warnings.push(Warning { code, message });
-    let edges = gradients.pixels.len();
     if edges < FEW_EDGE_PIXELS {
         warn("few-edges", format!("the map has only {edges} edge pixels: nothing much can be said of it"));
     }
@@ -218,5 +227,6 @@ fn find_warnings(survey: &Survey, parameters: &Parameters) -> Vec<Warning> {
             ),
         );
     }
+    warnings.extend(undecided(labels, &survey.confidence));
     warnings
 }

@@ -4,7 +4,9 @@
 mod common;
 
 use common::{Case, Random, STEP};
-use groundplan::{Frame, Given, Grid, Parameters, TABLE, Table, Value, parameters::Range, survey};
+use groundplan::gradients::Gradients;
+use groundplan::parameters::{Method, Range};
+use groundplan::{Frame, Given, Grid, Parameters, Survey, TABLE, Table, Value, survey, survey_sparingly};
 use std::time::{Duration, Instant};
 
 /// As random cases are, on maps up to the largest, where sums of products are at their widest.
@@ -124,6 +126,13 @@ fn survey_case(seed: u64) -> Result<(), String> {
     let again = survey(&grid, &parameters, Given::default(), 4);
     if format!("{made:?}") != format!("{again:?}") {
         return Err("four threads make another survey than one".to_owned());
+    }
+    if parameters.labels_method == Method::Strips {
+        let sparing = survey_sparingly(&grid, &parameters, Given::default(), 2);
+        let kept = Survey { gradients: Gradients::default(), ..made };
+        if format!("{kept:?}") != format!("{sparing:?}") {
+            return Err("a survey that lets go what it can is another".to_owned());
+        }
     }
     Ok(())
 }

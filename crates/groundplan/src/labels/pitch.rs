@@ -3,12 +3,11 @@
 
 use super::Evidence;
 use super::turned::Turned;
+use crate::gradients::SPECK;
 
 /// Lags are counted in steps of this many metres, between the shortest and the longest that are looked at.
 const STEP: f64 = 0.05;
 const LAGS: (f64, f64) = (1.6, 6.0);
-/// Gradients of this magnitude or less are specks: posts, and the corners of goods.
-const SPECK: u8 = 100;
 /// Specks this near to a line stand on it, metres.
 const NEAR: f64 = 0.12;
 /// Lines with fewer specks say nothing.

@@ -73,10 +73,15 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
     };
     let first = labels.len() + rows.len();
     let corridors = rooms::Corridor::among(&labels);
+    let wider = |[low, high]: [f64; 2]| [low - pillars::RIM, high + pillars::RIM];
+    let rack = |row: &Row| rectangle(&views[row.direction], wider(row.along), wider(row.across));
+    let grounds: Vec<_> = rows.iter().map(rack).collect();
     let [racks, rooms, pillars] = side_by_side(evidence.threads, |side| {
-        let racks = side.start(|| rack_labels(evidence, division, &views, &rows, &squares));
-        let pillars = side.start(|| pillar_labels(evidence, &space.raster, &views, &rows, &squares));
-        let rooms = rooms::find(evidence, division, &space, bars, first, &racked, &corridors, &squares);
+        let squares = &squares;
+        // The views are let go with the racks: the regions need the room.
+        let racks = side.start(move || rack_labels(evidence, division, &views, &rows, squares));
+        let pillars = side.start(|| pillar_labels(evidence, &space.raster, &grounds, squares));
+        let rooms = rooms::find(evidence, division, &space, bars, first, &racked, &corridors, squares);
         [racks.get(), rooms, pillars.get()]
     });
     labels.extend(racks.into_iter().chain(rooms).chain(pillars));
@@ -119,16 +124,8 @@ fn squares(evidence: &Evidence, views: &[Turned], strips: &[Strip]) -> Squares {
     Squares::new(main, evidence)
 }
 
-fn pillar_labels(
-    evidence: &Evidence,
-    raster: &Raster,
-    views: &[Turned],
-    rows: &[Row],
-    squares: &Squares,
-) -> Vec<Label> {
-    let wider = |[low, high]: [f64; 2]| [low - pillars::RIM, high + pillars::RIM];
-    let rack = |row: &Row| rectangle(&views[row.direction], wider(row.along), wider(row.across));
-    let pillars = pillars::find(evidence, raster, &rows.iter().map(rack).collect::<Vec<_>>());
+fn pillar_labels(evidence: &Evidence, raster: &Raster, grounds: &[Vec<[f64; 2]>], squares: &Squares) -> Vec<Label> {
+    let pillars = pillars::find(evidence, raster, grounds);
     let items: Vec<_> = pillars.iter().map(|pillar| (squares.place(pillar.at), pillar.width)).collect();
     let names = squares.names("P", &items);
     let label = |(pillar, name): (&pillars::Pillar, String)| Label::Pillar {

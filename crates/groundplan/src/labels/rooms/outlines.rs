@@ -18,17 +18,17 @@ type Rings = Vec<Vec<[f64; 2]>>;
 /// The rings around each region by its number, the outer one first, counter-clockwise, then its holes.
 pub fn find(fine: &Fine, count: usize) -> Vec<Rings> {
     let mut rings: Vec<Rings> = vec![Vec::new(); count + 1];
-    // Every ring has a pixel whose lower side is on it.
-    let mut seen = Bits::new(fine.width * fine.height);
+    // Every ring has a lower side on it, and of each such stretch all that lies side by side.
+    let mut seen = Seen::new(fine);
     fine.numbers.lower_sides(|run, pixels| {
-        for pixel in pixels {
-            if !seen.get(pixel) {
-                let ring = Tracer { fine, region: run.number }.trace((pixel, 0), &mut seen);
-                let ring: Vec<[f64; 2]> =
-                    simplify(&ring).into_iter().map(|[x, y]| fine.to_grid([x as f64 / 2.0, y as f64 / 2.0])).collect();
-                if ring.len() >= 3 {
-                    rings[run.number as usize].push(ring);
-                }
+        if !seen.contains(pixels.start) {
+            let ring = Tracer { fine, region: run.number }.trace((pixels.start, 0), &mut seen);
+            let mut simple = simplify(&ring);
+            simple.shrink_to_fit();
+            let ring: Vec<[f64; 2]> =
+                simple.into_iter().map(|[x, y]| fine.to_grid([x as f64 / 2.0, y as f64 / 2.0])).collect();
+            if ring.len() >= 3 {
+                rings[run.number as usize].push(ring);
             }
         }
     });
@@ -41,12 +41,44 @@ pub fn find(fine: &Fine, count: usize) -> Vec<Rings> {
     rings
 }
 
+/// Which lower sides were passed: they are few against the pixels, and a ring that has one pixel's has its neighbours'.
+struct Seen {
+    /// The first pixel of each stretch.
+    starts: Vec<u32>,
+    passed: Bits,
+}
+
+impl Seen {
+    fn new(fine: &Fine) -> Self {
+        let mut count = 0;
+        fine.numbers.lower_sides(|_, _| count += 1);
+        let mut starts = Vec::with_capacity(count);
+        fine.numbers.lower_sides(|_, pixels| starts.push(pixels.start as u32));
+        Self { passed: Bits::new(count), starts }
+    }
+
+    fn stretch(&self, first: usize) -> usize {
+        self.starts.partition_point(|&start| (start as usize) < first)
+    }
+
+    fn contains(&self, first: usize) -> bool {
+        self.passed.get(self.stretch(first))
+    }
+
+    fn pass(&mut self, first: usize) {
+        self.passed.insert(self.stretch(first));
+    }
+}
+
 /// One region's border. A side of a pixel is (pixel, side), sides counted from below, counter-clockwise; it runs with
 /// the pixel on its left.
 struct Tracer<'a> {
     fine: &'a Fine,
     region: u32,
 }
+
+/// No side.
+const NOWHERE: u8 = 4;
 
 /// A point of a ring, and whether three regions or more meet there.
 type Node = (Point, bool);
@@ -72,13 +104,15 @@ impl Tracer<'_> {
         }
     }
 
-    fn trace(&self, start: (usize, u8), seen: &mut Bits) -> Vec<Node> {
+    fn trace(&self, start: (usize, u8), seen: &mut Seen) -> Vec<Node> {
         let mut ring = Vec::new();
         let mut at = start;
+        let mut before = NOWHERE;
         loop {
-            if at.1 == 0 {
-                seen.insert(at.0);
+            if at.1 == 0 && before != 0 {
+                seen.pass(at.0);
             }
+            before = at.1;
             let [middle, end] = self.points(at);
             ring.push((middle, false));
             let (pixel, side) = at;

@@ -118,16 +118,24 @@ impl Runs {
     /// The same with a few pixels more; they are in ascending order and had no number.
     pub fn with(self, more: &[(usize, u32)]) -> Self {
         let (width, pixels) = (self.width, (self.index.len() - 1) * WORD);
-        let mut merged = Vec::with_capacity(self.all.len() + more.len());
-        let mut rest = more.iter().map(|&(pixel, number)| Run::new(&(pixel..pixel + 1), number)).peekable();
-        for run in self.all {
-            while let Some(single) = rest.next_if(|single| single.from < run.from) {
-                merged.push(single);
+        drop(self.index);
+        let mut runs = self.all;
+        // From the last on, so that no run is written over before it has its place.
+        let (mut own, mut rest) = (runs.len(), more.len());
+        runs.reserve_exact(more.len());
+        runs.extend(more.iter().map(|&(pixel, number)| Run::new(&(pixel..pixel + 1), number)));
+        while rest > 0 {
+            let (pixel, number) = more[rest - 1];
+            let place = own + rest - 1;
+            if own > 0 && runs[own - 1].from as usize > pixel {
+                own -= 1;
+                runs[place] = runs[own];
+            } else {
+                rest -= 1;
+                runs[place] = Run::new(&(pixel..pixel + 1), number);
             }
-            merged.push(run);
         }
-        merged.extend(rest);
-        Self::new(width, pixels, merged)
+        Self::new(width, pixels, runs)
     }
 }
 
