@@ -40,7 +40,7 @@ HALLS: tuple[dict[str, Any], ...] = (
 
 #: Surveys a map and says what that took.
 CHILD = """
-import json, sys, time
+import json, re, sys, time
 import groundplan
 map = groundplan.read(sys.argv[1], resolution=float(sys.argv[2]), origin=(0, 0))
 print("ready", flush=True)
@@ -48,7 +48,8 @@ sys.stdin.readline()
 since, cpu = time.perf_counter(), time.process_time()
 survey = groundplan.survey(map, threads=int(sys.argv[3]) or None)
 spent = time.perf_counter() - since, time.process_time() - cpu
-print(json.dumps([*spent, len(survey.lines.offsets), len(survey.subdivision.areas), len(survey.labels)]), flush=True)
+counts = [int(re.search(rf"(\\d+) {what}", repr(survey))[1]) for what in ("lines", "faces", "labels")]
+print(json.dumps([*spent, *counts]), flush=True)
 """
 
 

@@ -30,8 +30,8 @@ from groundplan.maps import MapWarning
 if TYPE_CHECKING:
     from groundplan.survey import Survey
 
-#: So many records are written at a time.
-RECORDS = 4096
+#: So many records are written at a time, and so many labels: their outlines may be long.
+RECORDS, LABELS = 4096, 64
 
 #: What a label of a kind must have besides its kind.
 NEEDED = {
@@ -56,6 +56,7 @@ class Table:
 
     count: int
     some: Callable[[slice], list[Any]]
+    at_once: int = 0
 
 
 def parts(survey: Survey) -> dict[str, Any]:
@@ -147,8 +148,9 @@ def written(survey: Survey) -> Iterator[str]:
         if not isinstance(part, Table):
             yield dump(part)
             continue
-        for first in range(0, part.count, RECORDS):
-            yield ("," if first else "[") + dump(part.some(slice(first, first + RECORDS)))[1:-1]
+        count = part.at_once or RECORDS
+        for first in range(0, part.count, count):
+            yield ("," if first else "[") + dump(part.some(slice(first, first + count)))[1:-1]
         yield "]" if part.count else "[]"
     yield "\n}\n"
 

@@ -33,7 +33,7 @@ from groundplan._results import (
     Walls,
     record,
 )
-from groundplan._tree import RECORDS, Table, from_tree, to_tree, written
+from groundplan._tree import LABELS, Table, from_tree, to_tree, written
 from groundplan.maps import Map, MapWarning, from_array
 from groundplan.maps.map_server import shown
 from groundplan.parameters import named, resolve
@@ -133,13 +133,13 @@ class Survey(Stage):
     def _label_table(self) -> Table:
         """The labels, of which some can be had without making all."""
         labels: list[Label] | None = self.__dict__.get("labels")
-        return self.__dict__["_some_labels"] if labels is None else Table(len(labels), labels.__getitem__)
+        return self.__dict__["_some_labels"] if labels is None else Table(len(labels), labels.__getitem__, LABELS)
 
     def _each_label(self) -> Iterator[Label]:
         """The labels one after another, none of them kept."""
         found = self._label_table()
-        for first in range(0, found.count, RECORDS):
-            yield from found.some(slice(first, first + RECORDS))
+        for first in range(0, found.count, found.at_once):
+            yield from found.some(slice(first, first + found.at_once))
 
     def _with(self, **changes: Any) -> Survey:
         """As `dataclasses.replace` has it, but what is not made yet stays so."""
@@ -448,7 +448,7 @@ def surveyed(
     # For its routes and its updates, and no part of what it is.
     survey.__dict__.update(_map=map, _own=own, _gradients=found["gradients"])
     labels: _core.Labels = found["labels"]
-    some = Table(len(labels), lambda some: labels.some(*some.indices(len(labels))[:2]))
+    some = Table(len(labels), lambda some: labels.some(*some.indices(len(labels))[:2]), LABELS)
     cut, walls = survey.subdivision, survey.walls
     survey.__dict__["_some_labels"] = some
     survey.__dict__["_later"] = {
