@@ -3,15 +3,18 @@
 Simulated halls, each of its own kind, stand side by side on 200 x 200 m; larger maps are so many of these as they have
 room for. Each is a PGM, read by memory map and surveyed with the defaults in a process of its own. Linux only. Ends
 with exit code 1 when a bar is missed: 1 GiB at 1600 megapixels, and for a pixel 1.3 times what one costs on 16.
-``bench/scale.py 16 64`` measures these sizes only, ``--threads 1`` on so many threads.
+``bench/scale.py 16 64`` measures these sizes only, ``--threads 1`` on so many threads. With ``--dask`` each map is
+surveyed by four worker processes on this machine too, and the bytes of that survey are held to those from one thread.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import sys
 import tempfile
+import time
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +22,8 @@ import numpy as np
 import numpy.typing as npt
 from _watched import watched
 
+import groundplan
+from groundplan._tree import written
 from groundplan.simulate import office, warehouse
 
 SIZES = (1, 4, 16, 64, 256, 1600)
@@ -79,11 +84,39 @@ def measure(path: Path, threads: int) -> tuple[list[float], int]:
     return json.loads(said), most
 
 
+def on_four_workers(path: Path) -> tuple[float, float, bool]:
+    """Seconds of a survey by four worker processes and by one thread, and whether their bytes agree."""
+    import distributed
+
+    def digest(survey: groundplan.Survey) -> str:
+        found = hashlib.sha256()
+        for piece in written(survey):
+            found.update(piece.encode())
+        return found.hexdigest()
+
+    frame: dict[str, Any] = {"resolution": RESOLUTION, "origin": (0.0, 0.0, 0.0)}
+    workers = {"n_workers": 4, "threads_per_worker": 1, "processes": True, "host": "127.0.0.1"}
+    with (
+        distributed.LocalCluster(dashboard_address="127.0.0.1:0", **workers) as cluster,
+        distributed.Client(cluster, set_as_default=False) as client,
+    ):
+        client.wait_for_workers(4)
+        since = time.perf_counter()
+        survey = groundplan.survey(path, client=client, **frame)
+        many_s, many = time.perf_counter() - since, digest(survey)
+    del survey
+    map = groundplan.read(path, **frame)
+    since = time.perf_counter()
+    survey = groundplan.survey(map, threads=1)
+    return many_s, time.perf_counter() - since, many == digest(survey)
+
+
 def main() -> int:
     """Make the maps, measure, print the table, hold it to the bars."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("sizes", nargs="*", type=int, default=SIZES, help="megapixels")
     parser.add_argument("--threads", type=int, default=0, help="as many as there are cores")
+    parser.add_argument("--dask", action="store_true", help="hold the bytes from four workers to those from one thread")
     words = parser.parse_args()
     if not Path("/proc/self/status").exists():
         print("the memory of a process is only measured on Linux")
@@ -91,6 +124,7 @@ def main() -> int:
     one = piece()
     print(f"{'Mpx':>5}{'seconds':>9}{'of cores':>10}{'ns a pixel':>12}{'MiB':>7}{'lines':>7}{'faces':>9}{'labels':>8}")
     costs: dict[int, tuple[float, float]] = {}
+    missed = False
     with tempfile.TemporaryDirectory() as directory:
         path = Path(directory) / "map.pgm"
         for size in words.sizes:
@@ -101,13 +135,18 @@ def main() -> int:
             lines, faces, labels = (int(count) for count in counts)
             cost = f"{size:5}{seconds:9.2f}{cores:10.2f}{costs[size][0]:12.1f}{costs[size][1]:7.0f}"
             print(f"{cost}{lines:7}{faces:9}{labels:8}", flush=True)
+            if words.dask:
+                many_s, one_s, same = on_four_workers(path)
+                missed |= not same
+                said = f"{'same' if same else 'OTHER'} bytes"
+                print(f"{'':5} four workers {many_s:.2f} s, one thread {one_s:.2f} s, {said}", flush=True)
     bars = [("MiB at 1600 Mpx", costs[1600][1], BAR_MIB)] if 1600 in costs else []
     larger = [cost for size, (cost, _) in costs.items() if size > 16]
     if 16 in costs and larger:
         bars.append(("the dearest pixel of larger maps over one of 16 Mpx", max(larger) / costs[16][0], BAR_RATIO))
     for what, value, bar in bars:
         print(f"{what:52}{value:8.2f}  bar <= {bar:g}{'' if value <= bar else '  MISSED'}")
-    return int(any(value > bar for _, value, bar in bars))
+    return int(missed or any(value > bar for _, value, bar in bars))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ use crate::coverage::Coverage;
 use crate::directions::find_directions;
 use crate::gradients::{Gradients, find_gradients, find_gradients_in};
 use crate::grid::Grid;
-use crate::labels::{Division, Evidence, Ground, Sketch, find_confidence, find_labels_in, find_patterns};
+use crate::labels::{Division, Evidence, Ground, Sight, Sketch, find_confidence, find_labels_in, find_patterns};
 use crate::lines::find_lines;
 use crate::occupancy::Occupancy;
 use crate::parameters::Parameters;
@@ -32,10 +32,10 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads
     let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters));
     let radiograms = find_radiograms(frame, &gradients, &directions, parameters);
     let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
-    let sketch = {
+    let sight = {
         let evidence =
             Evidence { grid, gradients: &gradients, directions: &directions, lines: &lines, parameters, threads };
-        side_by_side(1, |side| Sketch::new(side, &evidence, Ground::start(side, grid, threads)))
+        side_by_side(1, |side| Sight::new(side, &evidence, Ground::start(side, grid, threads)).done())
     };
     // The labels' racks need specks, and no other stage needs gradients but the coverage of edges, which takes them
     // part by part.
@@ -43,6 +43,7 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads
     drop(gradients);
     let evidence = Evidence { grid, gradients: &specks, directions: &directions, lines: &lines, parameters, threads };
 
+    let sketch = Sketch::new(&evidence, sight);
     let arranged = || arrange(frame, &directions.angles, &lines);
     let sums = given.sums;
     let measured = |arrangement: &_| match &sums {

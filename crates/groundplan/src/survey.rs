@@ -7,7 +7,8 @@ use crate::directions::{Directions, find_directions};
 use crate::gradients::{Gradients, find_gradients};
 use crate::grid::Grid;
 use crate::labels::{
-    Division, Evidence, Ground, Label, Pattern, Sketch, find_confidence, find_labels, find_labels_in, find_patterns,
+    Division, Evidence, Ground, Label, Pattern, Sight, Sketch, find_confidence, find_labels, find_labels_in,
+    find_patterns,
 };
 use crate::lines::{Lines, find_lines};
 use crate::occupancy::{Occupancy, find_occupancy};
@@ -88,7 +89,7 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
             Evidence { grid, gradients: &gradients, directions: &directions, lines: &lines, parameters, threads };
         let (divided, labels, confidence) = side_by_side(threads, |side| {
             let divided = side.start(|| Divided::new(&evidence, given.sums));
-            let sketch = ground.map(|ground| Sketch::new(side, &evidence, ground));
+            let sketch = ground.map(|ground| Sketch::beside(&evidence, Sight::new(side, &evidence, ground)));
             let divided = divided.get();
             let Divided { subdivision, occupancy, adjacency, .. } = &divided;
             let division = Division { subdivision, occupancy, adjacency };

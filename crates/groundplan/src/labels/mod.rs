@@ -41,7 +41,7 @@ use crate::subdivision::Subdivision;
 use crate::tiles::Tiles;
 use look::Look;
 use rooms::Space;
-pub(crate) use sketch::Sketch;
+pub(crate) use sketch::{Sight, Sketch};
 pub(crate) use strips::find as find_labels_in;
 
 /// Kinds of junctions.
@@ -232,7 +232,7 @@ pub fn find_labels(evidence: &Evidence, division: &Division) -> Vec<Label> {
         Method::Paper => paper::find(evidence, division),
         Method::Strips => side_by_side(evidence.threads, |side| {
             let ground = Ground::start(side, evidence.grid, evidence.threads);
-            find_labels_in(evidence, division, Sketch::new(side, evidence, ground))
+            find_labels_in(evidence, division, Sketch::beside(evidence, Sight::new(side, evidence, ground)))
         }),
     }
 }

@@ -5,11 +5,12 @@ use super::corridors::{self, Strip};
 use super::gates;
 use super::joined;
 use super::junctions::{self, Meeting};
+use super::look::Look;
 use super::racks::{self, Row};
 use super::rooms::{Bar, Space};
 use super::turned::Turned;
 use super::{Evidence, Ground};
-use crate::bands::{Side, map_each};
+use crate::bands::{Later, Side, map_each};
 
 /// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
 const ALONE: (f64, f64) = (2.0, 5.0);
@@ -24,13 +25,22 @@ const NICHES: (f64, f64) = (2.2, 4.0);
 pub struct Sketch {
     pub views: Vec<Turned>,
     pub plan: Plan,
-    /// The free space, if there is some, and all that may be a door in it.
-    pub free: Option<(Space, Vec<Bar>)>,
+    pub free: Free,
 }
 
-impl Sketch {
+/// What is seen before anything is made of it: all that needs gradients but for racks, which need the specks.
+pub struct Sight<'a, F> {
+    look: Look<'a>,
+    views: Vec<Turned>,
+    free: F,
+}
+
+/// The free space, if there is some, and all that may be a door in it.
+type Free = Option<(Space, Vec<Bar>)>;
+
+impl<'s, 'a> Sight<'a, Later<'s, Free>> {
     /// From the lines, and what was begun before there were any.
-    pub fn new<'s>(side: Side<'s, '_>, evidence: &'s Evidence, Ground { look, space }: Ground<'s, '_>) -> Self {
+    pub fn new(side: Side<'s, '_>, evidence: &'s Evidence, Ground { look, space }: Ground<'s, 'a>) -> Self {
         let free = side.start(move || {
             space.get().map(|space| {
                 let bars = space.bars(evidence);
@@ -42,15 +52,28 @@ impl Sketch {
         // Each view shares its own work out among what threads are left.
         let own = Evidence { threads: evidence.threads / count.max(1), ..*evidence };
         let views = map_each(count, evidence.threads, |d| Turned::new(&own, &look, d));
-        let found = joined::join(&views, corridors::find(evidence, &views));
-        let found = gates::without_bays(evidence, &look, &views, found);
-        let mut plan = Plan::new(&views, found);
-        let gates = gates::find(evidence, &look, &views, &plan.strips, &plan.rows);
-        if !gates.is_empty() {
-            plan.strips.extend(gates);
-            plan = Plan::new(&views, plan.strips);
-        }
+        Self { look, views, free }
+    }
+
+    /// When nothing of it is still being made.
+    pub fn done(self) -> Sight<'a, Free> {
+        Sight { look: self.look, views: self.views, free: self.free.get() }
+    }
+}
+
+impl Sketch {
+    /// Beside what is still being made of it.
+    pub fn beside(evidence: &Evidence, sight: Sight<Later<Free>>) -> Self {
+        let Sight { look, views, free } = sight;
+        let plan = Plan::of(evidence, &look, &views);
         Self { views, plan, free: free.get() }
+    }
+
+    /// From what is seen.
+    pub fn new(evidence: &Evidence, sight: Sight<Free>) -> Self {
+        let Sight { look, views, free } = sight;
+        let plan = Plan::of(evidence, &look, &views);
+        Self { views, plan, free }
     }
 }
 
@@ -66,6 +89,18 @@ pub struct Plan {
 }
 
 impl Plan {
+    fn of(evidence: &Evidence, look: &Look, views: &[Turned]) -> Self {
+        let found = joined::join(views, corridors::find(evidence, views));
+        let found = gates::without_bays(evidence, look, views, found);
+        let mut plan = Self::new(views, found);
+        let gates = gates::find(evidence, look, views, &plan.strips, &plan.rows);
+        if !gates.is_empty() {
+            plan.strips.extend(gates);
+            plan = Self::new(views, plan.strips);
+        }
+        plan
+    }
+
     fn new(views: &[Turned], strips: Vec<Strip>) -> Self {
         let (mut strips, meetings) = connected(views, strips);
         // A corridor goes on to what it meets, and there it may be what another one meets.
