@@ -23,6 +23,8 @@ SCORES = {
     "pillar_f1": ("pillars, F1", "", 3),
     "pitch_recall": ("racks with the right pitch", "", 3),
     "pitch_error_m": ("error of a rack's pitch, median", " m", 3),
+    "rack_recall": ("racks found", "", 3),
+    "rack_precision": ("racks that are ones", "", 3),
     "iou_1to1": ("rooms found, one to one, of their union", "", 3),
     "mcc": ("agreement on rooms, Matthews", "", 3),
     "rooms": ("rooms", "", 0),
@@ -43,7 +45,14 @@ SCORES |= {
 
 #: Columns of the suite's table: those before the labels are the same for every method.
 BEFORE = {"direction_error_deg": "error", "direction_extra": "extra", "line_recall": "lines"}
-LABELS = {"junction_f1": "F1", "junction_typed_f1": "typed", "corridor_recall": "recall", "corridor_precision": "prec"}
+LABELS = {
+    "junction_f1": "F1",
+    "junction_typed_f1": "typed",
+    "corridor_recall": "recall",
+    "corridor_precision": "prec",
+    "rack_recall": "racks",
+    "rack_precision": "prec",
+}
 #: Of the suite of names, in place of those: kept, and found again by whatever name.
 NAMES = {
     "names_aisles": "aisles",

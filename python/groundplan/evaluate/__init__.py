@@ -86,6 +86,9 @@ def score(survey: Document, truth: Document) -> dict[str, Any]:
         pitch_recall, pitch_error_m
             Share of the racks that lie on a true one of ``racks`` {a, b, pitch} whose pitch is right to 0.05 m, and the
             median error of those that have one; None without any.
+        rack_recall, rack_precision
+            One-to-one matching of racks whose outlines have an intersection over union of 0.5 at least with the
+            truth's ``racks`` {a, b, width, observed}; None without any. Racks that were not observed do not count.
 
     Raises
     ------
@@ -99,7 +102,7 @@ def score(survey: Document, truth: Document) -> dict[str, Any]:
     true = _document(truth, "truth", ("directions", "lines", "corridors", "junctions"))
     parts = [_scores.direction_scores, _scores.line_scores, _scores.junction_scores, _scores.corridor_scores]
     if "pillars" in true or "racks" in true:
-        parts.append(_patterns.pattern_scores)
+        parts += [_patterns.pattern_scores, _patterns.rack_scores]
     result: dict[str, Any] = {}
     for part in parts:
         try:
