@@ -44,8 +44,8 @@ def stages(map: Map, threads: int) -> Stages:
     occupancy, walls = survey.occupancy, survey.walls
     return {
         "gradients": lambda: gp.find_gradients(map, threads=threads),
-        "directions": lambda: gp.find_directions(map, gradients),
-        "radiograms": lambda: gp.find_radiograms(map, directions, gradients),
+        "directions": lambda: gp.find_directions(map, gradients, threads=threads),
+        "radiograms": lambda: gp.find_radiograms(map, directions, gradients, threads=threads),
         "lines": lambda: gp.find_lines(survey.radiograms),
         "subdivision": lambda: gp.subdivide(map, directions, lines),
         "occupancy": lambda: gp.find_occupancy(map, directions, lines, gradients, threads=threads),

@@ -29,10 +29,24 @@ def test_stages_are_the_same_with_one_and_four_threads() -> None:
     map = groundplan.from_array(tall(), RESOLUTION)
     gradients = groundplan.find_gradients(map, threads=1)
     assert groundplan.find_gradients(map, threads=4) == gradients
-    directions = groundplan.find_directions(map, gradients)
-    lines = groundplan.find_lines(groundplan.find_radiograms(map, directions, gradients))
+    directions = groundplan.find_directions(map, gradients, threads=1)
+    assert groundplan.find_directions(map, gradients, threads=4) == directions
+    radiograms = groundplan.find_radiograms(map, directions, gradients, threads=1)
+    assert groundplan.find_radiograms(map, directions, gradients, threads=4) == radiograms
+    lines = groundplan.find_lines(radiograms)
     one, four = (groundplan.find_occupancy(map, directions, lines, gradients, threads=n) for n in (1, 4))
     assert one == four
+
+
+def test_more_edge_pixels_than_one_thread_projects_at_a_time_give_the_same_directions() -> None:
+    picture = np.full((1600, 1600), zoo.FREE, dtype=np.uint8)
+    picture[::20] = zoo.OCCUPIED
+    picture[:, ::25] = zoo.OCCUPIED
+    map = groundplan.from_array(picture, RESOLUTION)
+    gradients = groundplan.find_gradients(map)
+    one, four = (groundplan.find_directions(map, gradients, threads=n) for n in (1, 4))
+    assert one == four
+    assert len(one) == 2
 
 
 def test_the_same_map_twice_is_the_same_survey() -> None:

@@ -30,7 +30,7 @@ from groundplan.maps._read import read_or_leave
 from groundplan.maps._source import Span
 from groundplan.maps._tally import Tally, summed
 from groundplan.parameters import named
-from groundplan.stages import layout, run
+from groundplan.stages import cores, layout, run
 
 if TYPE_CHECKING:
     from groundplan.survey import Survey
@@ -163,10 +163,11 @@ def survey_site(
     # The lowest rows come first in gradients, the highest in maps.
     gradients = {name: np.concatenate([part.pop(name) for part in reversed(found)]) for name in list(found[0])}
     grid = layout(map)
-    directions = own.get("directions") or run(_core.find_directions, grid, gradients, values)
+    directions = own.get("directions") or run(_core.find_directions, grid, gradients, values, cores(threads))
     lines = own.get("lines")
     if lines is None:
-        lines = run(_core.find_lines, run(_core.find_radiograms, grid, gradients, directions, values), values)
+        radiograms = run(_core.find_radiograms, grid, gradients, directions, values, cores(threads))
+        lines = run(_core.find_lines, radiograms, values)
     # Those of no rows at all: a row of noughts for each face, and lines that do not fit are refused here.
     sums = run(_core.sum_faces, grid, (map.height, 0), (0, 0), directions, lines, 1)
     if far is not None:

@@ -145,7 +145,9 @@ def find_gradients(map: Map, *, threads: int | None = None, **parameters: Any) -
     return made(Gradients, run(_core.find_gradients, grid, named(parameters), cores(threads)))
 
 
-def find_directions(map: Map, gradients: Gradients | None = None, **parameters: Any) -> Directions:
+def find_directions(
+    map: Map, gradients: Gradients | None = None, *, threads: int | None = None, **parameters: Any
+) -> Directions:
     """II-A: the dominant directions.
 
     Their number and angles are found unless ``directions_count`` or ``directions_angles_deg`` are given.
@@ -156,18 +158,25 @@ def find_directions(map: Map, gradients: Gradients | None = None, **parameters: 
         The occupancy grid.
     gradients
         Its oriented gradients; found anew where none are given, here and in all stages.
+    threads
+        At most so many; all cores by default. Any number gives the same directions.
 
     Raises
     ------
     ParameterError
         A parameter that is not known or out of its range; ``stage.input`` for what is no map, or gradients of another.
     """
-    grid, edges = layout(needs(Map, "map", map)), _gradients(map, gradients, parameters)
-    return made(Directions, run(_core.find_directions, grid, edges, named(parameters)))
+    grid, edges = layout(needs(Map, "map", map)), _gradients(map, gradients, parameters, threads)
+    return made(Directions, run(_core.find_directions, grid, edges, named(parameters), cores(threads)))
 
 
 def find_radiograms(
-    map: Map, directions: Directions, gradients: Gradients | None = None, **parameters: Any
+    map: Map,
+    directions: Directions,
+    gradients: Gradients | None = None,
+    *,
+    threads: int | None = None,
+    **parameters: Any,
 ) -> list[Radiogram]:
     """II-B: the radiogram of each direction.
 
@@ -177,6 +186,8 @@ def find_radiograms(
         As `find_directions` takes them.
     directions
         Those found, or `Directions.of` angles in radians.
+    threads
+        At most so many; all cores by default. Any number gives the same radiograms.
 
     Returns
     -------
@@ -189,8 +200,8 @@ def find_radiograms(
         A parameter that is not known or out of its range; ``stage.input`` for directions that do not fit.
     """
     grid, along = layout(needs(Map, "map", map)), taken(Directions, "directions", directions)
-    edges = _gradients(map, gradients, parameters)
-    found = run(_core.find_radiograms, grid, edges, along, named(parameters))
+    edges = _gradients(map, gradients, parameters, threads)
+    found = run(_core.find_radiograms, grid, edges, along, named(parameters), cores(threads))
     return [made(Radiogram, arrays) for arrays in found]
 
 

@@ -426,7 +426,8 @@ def surveyed(
     grid, values = layout(map), named(parameters)
     if "lines" in own and "directions" not in own | parts:
         edges = parts.get("gradients") or run(_core.find_gradients, grid, values, cores(threads))
-        parts = parts | {"gradients": edges, "directions": run(_core.find_directions, grid, edges, values)}
+        directions = run(_core.find_directions, grid, edges, values, cores(threads))
+        parts = parts | {"gradients": edges, "directions": directions}
     found = run(_core.survey, grid, values, cores(threads), own | parts, keep)
     stages = {
         "directions": Directions,

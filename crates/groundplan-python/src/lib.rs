@@ -112,10 +112,11 @@ mod _core {
         layout: Layout<'py>,
         gradients: &Bound<'py, PyDict>,
         parameters: &Bound<'py, PyDict>,
+        threads: usize,
     ) -> PyResult<Bound<'py, PyDict>> {
         let frame = layout.frame();
-        let gradients = convert::gradients_on(gradients, &frame)?;
-        let made = directions::find_directions(&frame, &gradients, &convert::parameters(parameters)?);
+        let (gradients, parameters) = (convert::gradients_on(gradients, &frame)?, convert::parameters(parameters)?);
+        let made = py.detach(|| directions::find_directions(&frame, &gradients, &parameters, threads));
         convert::from_directions(py, made)
     }
 
@@ -127,11 +128,13 @@ mod _core {
         gradients: &Bound<'py, PyDict>,
         directions: &Bound<'py, PyDict>,
         parameters: &Bound<'py, PyDict>,
+        threads: usize,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let frame = layout.frame();
         let gradients = convert::gradients_on(gradients, &frame)?;
         let (directions, parameters) = (convert::directions(directions)?, convert::parameters(parameters)?);
-        convert::from_radiograms(py, &radiograms::find_radiograms(&frame, &gradients, &directions, &parameters))
+        let made = py.detach(|| radiograms::find_radiograms(&frame, &gradients, &directions, &parameters, threads));
+        convert::from_radiograms(py, &made)
     }
 
     /// II-B: the wavelet response that a radiogram's peaks are read from: widths in metres, and a row for each.

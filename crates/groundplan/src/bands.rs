@@ -71,7 +71,7 @@ pub fn fold_bands<T: Send>(
     fold(rows.div_ceil(BAND_ROWS), threads, empty, |total, n| add(total, band(n, rows)), merge)
 }
 
-fn fold<T: Send>(
+pub fn fold<T: Send>(
     count: usize,
     threads: usize,
     empty: impl Fn() -> T + Sync,

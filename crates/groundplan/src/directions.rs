@@ -2,9 +2,11 @@
 
 use crate::gradients::Gradients;
 use crate::grid::{Frame, angle_between, tidy, tidy_angle, undirected};
-use crate::oriented::{BINS, Oriented, Sharpness};
+use crate::oriented::{BINS, Oriented};
 use crate::parameters::Parameters;
-use crate::radiograms::{UNIT, bins, metres_per_unit, project};
+use crate::projection::{Across, FRACTIONS, Points};
+use crate::radiograms::{UNIT, metres_per_unit};
+use crate::sharpness::{SCAN_DEG, sharpest};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The dominant directions, strongest first, and what they were decided from.
@@ -38,10 +40,9 @@ const OTHERS_AMONG_CONTROLS: usize = 4;
 const SECOND: f64 = 0.04;
 /// Directions that are given closer than this are one, radians.
 const CLOSEST: f64 = 1e-6;
-/// Steps of the search for the sharpest radiogram: half range and step, degrees. The first is over coarser bins.
-const SEARCH: [(f64, f64); 3] = [(3.0, 0.25), (0.3, 0.05), (0.06, 0.01)];
-/// How often the search moves on, at most.
-const MOST_MOVES: usize = 2;
+/// While a candidate's angle is known to so many degrees, it may have this share of what will be found.
+const HALF_KNOWN_DEG: f64 = 0.5;
+const HALF_KNOWN: f64 = 0.5;
 /// Directions are whole parts of a right angle, 2 to this power of them: what changes in a corner of a map as a rule
 /// turns none of them, and so moves no line elsewhere.
 const PARTS_BITS: u32 = 15;
@@ -57,13 +58,13 @@ const BACKGROUND_PIXELS: usize = 20;
 /// The strongest peak of the histogram is measured first and the pixels that lie on its lines are taken out, so that
 /// no pixel speaks for two directions; then the next, until what lines up is no longer worth the name.
 #[must_use]
-pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parameters) -> Directions {
+pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parameters, threads: usize) -> Directions {
     let mut rest = Oriented::new(gradients);
-    let histogram = rest.histogram();
+    let histogram = turned(rest.histogram(), frame);
     let given = parameters.directions_angles_deg.as_ref();
     let mut found = match given {
-        Some(angles) => measure(frame, &mut rest, angles, parameters),
-        None => search(frame, &mut rest, parameters),
+        Some(angles) => measure(frame, &mut rest, angles, parameters, threads),
+        None => search(frame, &mut rest, parameters, threads),
     };
     found.sort_by(|a, b| b.metres.total_cmp(&a.metres));
     let strongest = found.first().map_or(0.0, |f| f.metres);
@@ -86,7 +87,7 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
     Directions {
         angles: found.iter().map(|f| tidy_angle(frame.angle_to_map(f.angle))).collect(),
         weights: found.iter().map(|f| if strongest > 0.0 { tidy(f.metres / strongest) } else { 0.0 }).collect(),
-        histogram: turned(&histogram, frame),
+        histogram,
         explained: if total > 0.0 { tidy((sum / total).min(1.0)) } else { 0.0 },
     }
 }
@@ -96,65 +97,93 @@ struct Candidate {
     angle: f64,
     /// Metres of structure that line up along it.
     metres: f64,
-    /// What lines up beside it, least first: scattered pixels line up there as well as they do here.
-    beside: [f64; CONTROLS_DEG.len()],
+    /// At how many of the controls clearly less lines up: scattered pixels line up there as well as they do here.
+    quiet: usize,
 }
 
 impl Candidate {
-    /// Clearly more lines up here than beside; so many of the greatest controls may be other directions.
+    /// Clearly more lines up here than beside; so many of the controls may lie on other directions.
     fn exceeds_chance(&self, others: usize) -> bool {
-        self.metres > CONTRAST * self.beside[self.beside.len() - 1 - others]
+        self.quiet + others >= CONTROLS_DEG.len()
     }
 }
 
 /// How much lines up along the directions that are given, degrees in the map frame; each once.
-fn measure(frame: &Frame, rest: &mut Oriented, angles: &[f64], parameters: &Parameters) -> Vec<Candidate> {
+fn measure(
+    frame: &Frame,
+    rest: &mut Oriented,
+    angles: &[f64],
+    parameters: &Parameters,
+    threads: usize,
+) -> Vec<Candidate> {
     let mut found: Vec<Candidate> = Vec::new();
     for angle in angles.iter().map(|a| frame.angle_to_grid(a.to_radians())) {
         if found.iter().all(|other| angle_between(other.angle, angle) > CLOSEST) {
-            let lines = aligned(frame, rest, angle);
+            let lines = aligned(frame, rest, angle, threads);
             take(rest, angle, &lines, parameters);
-            found.push(Candidate { angle, metres: lines.metres, beside: Default::default() });
+            found.push(Candidate { angle, metres: lines.metres, quiet: 0 });
         }
     }
     found
 }
 
 /// Takes direction after direction out of `rest`.
-fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters) -> Vec<Candidate> {
+fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: usize) -> Vec<Candidate> {
     let separation = parameters.directions_separation_deg.to_radians();
+    let tolerance = parameters.radiograms_tolerance_deg.to_radians();
+    let diagonal = libm::hypot(frame.width as f64, frame.height as f64);
     // What is less than this share of the strongest is of no use, unless so many directions were asked for.
     let least = if parameters.directions_count.is_some() { 0.0 } else { parameters.directions_min_weight.min(SECOND) };
     let mut strongest: f64 = 0.0;
     let mut found: Vec<Candidate> = Vec::new();
     let mut tried: Vec<f64> = Vec::new();
+    let mut candidates = candidates(rest.histogram());
     while tried.len() < MOST_CANDIDATES {
-        let candidates = candidates(&rest.histogram());
         let fresh = |angle: &f64| tried.iter().all(|other| angle_between(*other, *angle) >= separation / 2.0);
-        let Some(start) = candidates.into_iter().find(fresh) else {
+        let Some(start) = candidates.iter().copied().find(fresh) else {
             break;
         };
         tried.push(start);
-        let around = rest.along(start, (ALIGNED_DEG + SEARCH[0].0).to_radians());
-        let most = around.len() as f64 * frame.resolution * std::f64::consts::SQRT_2;
-        if most < least * strongest {
+        let useful = least * strongest;
+        if most(frame, rest, start, ALIGNED_DEG + SCAN_DEG) < useful {
             continue;
         }
-        let angle = sharpest(frame, rest, start, parameters);
-        if found.iter().all(|other| angle_between(other.angle, angle) >= separation) {
-            let lines = aligned(frame, rest, angle);
+        let far = |angle: f64, by: f64| found.iter().all(|other| angle_between(other.angle, angle) >= by);
+        let worth = |angle: f64| {
+            let metres = || aligned(frame, rest, angle, threads).metres;
+            far(angle, separation - HALF_KNOWN_DEG.to_radians()) && (useful == 0.0 || metres() >= HALF_KNOWN * useful)
+        };
+        let pixels = rest.along(start, tolerance);
+        let Some(angle) = sharpest(&pixels, start, diagonal, threads, worth) else {
+            continue;
+        };
+        let angle = undirected(settled(diagonal, angle));
+        if far(angle, separation) {
+            let lines = aligned(frame, rest, angle, threads);
             let metres = lines.metres;
-            let mut beside = [f64::INFINITY; CONTROLS_DEG.len()];
-            if metres >= least * strongest {
-                beside = CONTROLS_DEG.map(|turn| aligned(frame, rest, angle + turn.to_radians()).metres);
-                beside.sort_by(f64::total_cmp);
-            }
+            let quiet = if metres >= useful { quiet(frame, rest, angle, metres, threads) } else { 0 };
             strongest = strongest.max(metres);
             take(rest, angle, &lines, parameters);
-            found.push(Candidate { angle, metres, beside });
+            found.push(Candidate { angle, metres, quiet });
+            candidates = self::candidates(rest.histogram());
         }
     }
     found
+}
+
+/// No less than lines up along an angle, by how many pixels lie along it.
+fn most(frame: &Frame, rest: &Oriented, angle: f64, tolerance_deg: f64) -> f64 {
+    rest.at_most_along(angle, tolerance_deg.to_radians()) as f64 * frame.resolution * std::f64::consts::SQRT_2
+}
+
+/// At how many of the controls around an angle clearly less lines up than there.
+fn quiet(frame: &Frame, rest: &Oriented, angle: f64, metres: f64, threads: usize) -> usize {
+    let is_quiet = |turn: &f64| {
+        let beside = angle + turn.to_radians();
+        metres > CONTRAST * most(frame, rest, beside, ALIGNED_DEG)
+            || metres > CONTRAST * aligned(frame, rest, beside, threads).metres
+    };
+    CONTROLS_DEG.iter().filter(|turn| is_quiet(turn)).count()
 }
 
 /// The histogram over the angle in the map frame.
@@ -165,80 +194,63 @@ fn turned(histogram: &[u64], frame: &Frame) -> Vec<f64> {
 
 /// Peaks of the smoothed histogram, highest first, as angles on the grid.
 fn candidates(histogram: &[u64]) -> Vec<f64> {
-    let at = |bin: usize, shift: isize| histogram[(bin as isize + shift).rem_euclid(BINS as isize) as usize];
-    let reach = SMOOTHING as isize;
-    let smooth: Vec<u64> =
-        (0..BINS).map(|bin| (-reach..=reach).map(|s| at(bin, s) * (reach + 1 - s.abs()) as u64).sum()).collect();
+    // Round about, so that none asks where it ends.
+    let round = |values: &[u64]| -> Vec<u64> { [&values[BINS - SMOOTHING..], values, &values[..SMOOTHING]].concat() };
+    let triangle = |around: &[u64]| {
+        around.iter().enumerate().map(|(n, value)| value * (SMOOTHING + 1 - n.abs_diff(SMOOTHING)) as u64).sum()
+    };
+    let smooth: Vec<u64> = round(histogram).windows(2 * SMOOTHING + 1).map(triangle).collect();
     let highest = smooth.iter().copied().max().unwrap_or(0);
-    let mut peaks: Vec<usize> = (0..BINS)
-        .filter(|&bin| {
-            let value = smooth[bin];
-            let lower = |s: isize| smooth[(bin as isize + s).rem_euclid(BINS as isize) as usize];
-            value > 0
-                && value as f64 >= LOWEST_CANDIDATE * highest as f64
-                && (1..=reach).all(|s| value > lower(-s) && value >= lower(s))
-        })
+    let is_peak = |around: &[u64]| {
+        let value = around[SMOOTHING];
+        value > 0
+            && value as f64 >= LOWEST_CANDIDATE * highest as f64
+            && around[..SMOOTHING].iter().all(|lower| value > *lower)
+            && around[SMOOTHING..].iter().all(|lower| value >= *lower)
+    };
+    let around = round(&smooth);
+    let mut peaks: Vec<usize> = around
+        .windows(2 * SMOOTHING + 1)
+        .enumerate()
+        .filter(|(_, around)| is_peak(around))
+        .map(|(bin, _)| bin)
         .collect();
     peaks.sort_by_key(|&bin| (std::cmp::Reverse(smooth[bin]), bin));
     peaks.truncate(MOST_CANDIDATES);
     peaks.into_iter().map(|bin| undirected(((bin as f64 + 0.5) / BINS as f64 - 0.5) * PI)).collect()
 }
 
-/// The angle near `start` at which the radiogram is sharpest.
-fn sharpest(frame: &Frame, rest: &Oriented, start: f64, parameters: &Parameters) -> f64 {
-    let tolerance = parameters.radiograms_tolerance_deg.to_radians();
-    let mut sharpness = Sharpness::new(frame, rest, &rest.along(start, tolerance));
-    let mut best = start;
-    for (level, (range, step)) in SEARCH.into_iter().enumerate() {
-        let steps = (range / step).round() as i64;
-        // A peak of the histogram may lie further off than the range: while the best is at its end, it moves on.
-        for _ in 0..MOST_MOVES {
-            let centre = best;
-            let tried: Vec<(f64, f64)> = (-steps..=steps)
-                .map(|n| centre + (n as f64 * step).to_radians())
-                .map(|angle| (angle, if level == 0 { sharpness.at::<3>(angle) } else { sharpness.at::<7>(angle) }))
-                .collect();
-            let top = (0..tried.len()).max_by(|&a, &b| tried[a].1.total_cmp(&tried[b].1)).unwrap_or(0);
-            best = tried[top].0;
-            if let (Some(left), Some(right)) = (top.checked_sub(1), tried.get(top + 1)) {
-                best += step.to_radians() * vertex(tried[left].1, tried[top].1, right.1);
-                break;
-            }
-        }
-    }
-    undirected(settled(frame, best))
-}
-
-/// The nearest whole part of a right angle.
-fn settled(frame: &Frame, angle: f64) -> f64 {
-    let reach = libm::hypot(frame.width as f64, frame.height as f64) / 2.0;
+/// The nearest whole part of a right angle, on a map of so many pixels from corner to corner.
+fn settled(diagonal: f64, angle: f64) -> f64 {
     let mut part = FRAC_PI_2 / f64::from(1u32 << PARTS_BITS);
-    while part / 2.0 * reach > MOST_MOVED {
+    while part / 2.0 * diagonal / 2.0 > MOST_MOVED {
         part /= 2.0;
     }
     (angle / part).round() * part
-}
-
-/// Where the parabola through three equally spaced values has its top, in steps from the middle one.
-fn vertex(left: f64, middle: f64, right: f64) -> f64 {
-    let bend = left - 2.0 * middle + right;
-    if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 }
 }
 
 /// Structure that lines up along an angle.
 struct Aligned {
     /// Metres that stand out of the background as lines.
     metres: f64,
-    /// The first bin of the projection, and for each bin whether a line lies there.
-    first: i64,
+    /// How it was projected, and for each bin whether a line lies there.
+    across: Across,
     on_line: Vec<bool>,
 }
 
-fn aligned(frame: &Frame, rest: &Oriented, angle: f64) -> Aligned {
-    let indices = rest.along(angle, ALIGNED_DEG.to_radians());
-    let (first, bins) = project(frame, angle, indices.iter().map(|&n| (rest.pixel(n), UNIT)));
-    let unit = metres_per_unit(frame, angle) / frame.resolution;
-    let values: Vec<f64> = bins.iter().map(|&bin| bin as f64 * unit).collect();
+fn aligned(frame: &Frame, rest: &Oriented, angle: f64, threads: usize) -> Aligned {
+    let points = Points::new(&rest.along(angle, ALIGNED_DEG.to_radians()));
+    let across = points.across(angle, 1, 1);
+    let mut sums = Vec::new();
+    points.sums(&across, &mut sums, threads);
+    let unit = metres_per_unit(frame, angle) / frame.resolution * UNIT as f64;
+    let mut before = 0;
+    let part = |sum: &u64| {
+        let value = u64::from(FRACTIONS) * (sum >> u32::BITS) - (sum & u64::from(u32::MAX)) + before;
+        before = sum & u64::from(u32::MAX);
+        value as f64 * unit
+    };
+    let values: Vec<f64> = sums.iter().map(part).collect();
     let mut sums = vec![0.0];
     for value in &values {
         sums.push(sums[sums.len() - 1] + value);
@@ -259,15 +271,14 @@ fn aligned(frame: &Frame, rest: &Oriented, angle: f64) -> Aligned {
             n += 1;
         }
     }
-    Aligned { metres, first, on_line }
+    Aligned { metres, across, on_line }
 }
 
 /// Takes out the pixels on lines.
 fn take(rest: &mut Oriented, angle: f64, lines: &Aligned, parameters: &Parameters) {
-    let indices = rest.along(angle, parameters.radiograms_tolerance_deg.to_radians());
-    let is_on_line = |bin: i64| lines.on_line[(bin - lines.first) as usize];
-    let bins = bins(angle, indices.iter().map(|&n| rest.pixel(n)));
-    let gone: Vec<u32> =
-        indices.iter().zip(bins).filter(|(_, bin)| is_on_line(*bin)).map(|(&index, _)| index).collect();
-    rest.remove(gone.into_iter());
+    let tolerance = parameters.radiograms_tolerance_deg.to_radians();
+    let is_on_line =
+        |pixel: &[u32; 2]| lines.across.nearest(*pixel).and_then(|bin| lines.on_line.get(bin)).is_some_and(|on| *on);
+    let gone: Vec<bool> = rest.along(angle, tolerance).iter().map(is_on_line).collect();
+    rest.remove(angle, tolerance, &gone);
 }

@@ -1,9 +1,11 @@
 //! II-B: projection of the edge pixels along a direction, filtered by their gradients.
 
+use crate::bands::map_each;
 use crate::directions::Directions;
 use crate::gradients::Gradients;
 use crate::grid::{Frame, angle_between, tidy};
 use crate::parameters::Parameters;
+use crate::projection::SHARE;
 
 /// How much structure lies at each offset across one direction.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,12 +54,6 @@ pub(crate) fn project(frame: &Frame, angle: f64, pixels: impl Iterator<Item = ([
     (first, bins)
 }
 
-/// The bin that each pixel lies nearest to.
-pub(crate) fn bins(angle: f64, pixels: impl Iterator<Item = [u32; 2]>) -> impl Iterator<Item = i64> {
-    let [nx, ny] = normal(angle);
-    pixels.map(centre).map(move |[x, y]| (nx * x + ny * y + (1 << BITS)) >> (BITS + 1))
-}
-
 /// Column and row, doubled plus one: the pixel's centre in half pixels.
 fn centre(pixel: [u32; 2]) -> [i64; 2] {
     pixel.map(|p| 2 * i64::from(p) + 1)
@@ -96,10 +92,12 @@ pub fn find_radiograms(
     gradients: &Gradients,
     directions: &Directions,
     parameters: &Parameters,
+    threads: usize,
 ) -> Vec<Radiogram> {
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
-    let project = |(direction, &angle): (usize, &f64)| {
-        let angle = frame.angle_to_grid(angle);
+    let threads = if gradients.pixels.len() < SHARE { 1 } else { threads };
+    map_each(directions.angles.len(), threads, |direction| {
+        let angle = frame.angle_to_grid(directions.angles[direction]);
         // The pixels that lie along it; those without a direction count a little too, as the posts of a rack do.
         let all = gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes);
         let weighed =
@@ -113,6 +111,5 @@ pub fn find_radiograms(
             values.reverse();
         }
         Radiogram { direction, start: tidy(ends[0].min(ends[1])), step: frame.resolution, values }
-    };
-    directions.angles.iter().enumerate().map(project).collect()
+    })
 }

@@ -82,8 +82,8 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
     let mut survey = side_by_side(threads, |side| {
         let ground = strips.then(|| Ground::start(side, grid, threads));
         let gradients = given.gradients.unwrap_or_else(|| find_gradients(grid, parameters, threads));
-        let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters));
-        let radiograms = find_radiograms(frame, &gradients, &directions, parameters);
+        let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters, threads));
+        let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
         let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
         let evidence =
             Evidence { grid, gradients: &gradients, directions: &directions, lines: &lines, parameters, threads };

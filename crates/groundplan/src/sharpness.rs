@@ -1,0 +1,164 @@
+//! II-A: the angle at which the projection of some pixels is sharpest.
+
+use crate::projection::{FRACTIONS, Points};
+
+/// How sharp the projection of some pixels is: the sum of the squares of its smoothed bins. It is greatest where walls
+/// fall on single bins. The bins are finer than a pixel and smoothed over more than one, so that it does not matter
+/// where between the bins a wall falls: else an angle slightly off, at which the walls happen to fall upon bins, would
+/// look sharper than the right one.
+struct Sharpness {
+    points: Points,
+    sums: Vec<u64>,
+    threads: usize,
+}
+
+/// The widest smoothing, bins.
+const WIDEST: usize = 8;
+/// Bins are smoothed so many at a time.
+const CHUNK: usize = 128;
+
+impl Sharpness {
+    fn new(pixels: &[[u32; 2]], threads: usize) -> Self {
+        Self { points: Points::new(pixels), sums: Vec::new(), threads }
+    }
+
+    /// Of few bins and smoothed little: a few short lines show among much else.
+    fn roughly_at(&mut self, angle: f64) -> f64 {
+        self.over::<2, 2>(angle)
+    }
+
+    /// Of many bins and smoothed more: so the angle is the more exact.
+    fn at(&mut self, angle: f64) -> f64 {
+        self.over::<4, 8>(angle)
+    }
+
+    /// With so many bins to the pixel, on which pixels in a row fall, and smoothed twice over some.
+    fn over<const PER_PIXEL: usize, const WIDTH: usize>(&mut self, angle: f64) -> f64 {
+        // So much is free at both ends that smoothing finds zeros there, and whole chunks beyond.
+        let across = self.points.across(angle, PER_PIXEL, 2 * WIDTH);
+        self.points.sums(&across, &mut self.sums, self.threads);
+        self.sums.resize(across.count.next_multiple_of(CHUNK) + 2 * WIDTH, 0);
+        let chunks = self.sums.windows(CHUNK + 2 * WIDTH - 1).step_by(CHUNK);
+        chunks.map(|sums| smoothed::<WIDTH>(sums).iter().map(|&v| u64::from(v).pow(2)).sum::<u64>() as f64).sum()
+    }
+}
+
+/// A chunk of bins, as [`Points::sums`] has them, smoothed twice over so many.
+fn smoothed<const WIDTH: usize>(sums: &[u64]) -> [u32; CHUNK] {
+    let mut bins = [0u32; CHUNK + 2 * WIDEST];
+    for (to, pair) in bins.iter_mut().zip(sums.windows(2)) {
+        let count = (pair[1] >> u32::BITS) as u32;
+        *to = (FRACTIONS * count).wrapping_sub(pair[1] as u32).wrapping_add(pair[0] as u32);
+    }
+    // Sums over two, of them over two, and so on.
+    let mut width = 1;
+    while width < WIDTH {
+        for _ in 0..2 {
+            for n in 0..CHUNK + 2 * (WIDTH - width) {
+                bins[n] = bins[n].wrapping_add(bins[n + width]);
+            }
+        }
+        width *= 2;
+    }
+    std::array::from_fn(|n| bins[n])
+}
+
+/// The search begins so far to both sides and with such steps, degrees.
+pub(crate) const SCAN_DEG: f64 = 3.0;
+const STEP_DEG: f64 = 0.5;
+/// While the best is at the end of what was looked at it goes on, by so many steps at most.
+const FURTHER: i32 = 6;
+/// So many pixels say where the sharpest is; how sharp it is there takes all.
+const SAMPLE: usize = 4096;
+/// Steps get smaller until what is furthest away moves by no more than so many pixels.
+const FINEST_PIXELS: f64 = 0.5;
+/// How often a step is taken again, at most.
+const MOVES: usize = 4;
+
+/// The angle near `start` at which the projection of pixels is sharpest, on a map of so many pixels from corner to
+/// corner; none where it is not `worth` the search, which is asked when the angle is known to half a degree.
+///
+/// What lines up over a length of l pixels is spread over l sin(a) bins at an angle a beside its own, so sharpness falls
+/// off as 1 / a, and halved steps climb to its top.
+pub(crate) fn sharpest(
+    pixels: &[[u32; 2]],
+    start: f64,
+    diagonal: f64,
+    threads: usize,
+    worth: impl Fn(f64) -> bool,
+) -> Option<f64> {
+    let mut some = Sharpness::new(&sample(pixels), threads);
+    let mut best = scan(start, |angle| some.roughly_at(angle));
+    let mut step = STEP_DEG.to_radians() / 2.0;
+    best.climb(step, |angle| some.roughly_at(angle));
+    if !worth(best.angle) {
+        return None;
+    }
+    best.value = some.at(best.angle);
+    step /= 2.0;
+    let mut top = best.climb(step, |angle| some.at(angle));
+    let mut all = Sharpness::new(pixels, threads);
+    best = Best { angle: top, value: all.at(top) };
+    while step > FINEST_PIXELS / diagonal {
+        step /= 4.0;
+        top = best.climb(step, |angle| all.at(angle));
+    }
+    Some(top)
+}
+
+/// The sharpest of angles around `start`.
+fn scan(start: f64, mut sharpness: impl FnMut(f64) -> f64) -> Best {
+    let angle = |n: i32| start + (f64::from(n) * STEP_DEG).to_radians();
+    let mut best = Best { angle: start, value: f64::NEG_INFINITY };
+    let mut look = |n: i32, best: &mut Best| {
+        let value = sharpness(angle(n));
+        if value > best.value {
+            *best = Best { angle: angle(n), value };
+        }
+    };
+    let steps = (SCAN_DEG / STEP_DEG).round() as i32;
+    (-steps..=steps).for_each(|n| look(n, &mut best));
+    for side in [-1, 1] {
+        let mut n = steps;
+        while n < steps + FURTHER && best.angle == angle(side * n) {
+            n += 1;
+            look(side * n, &mut best);
+        }
+    }
+    best
+}
+
+/// The sharpest so far.
+struct Best {
+    angle: f64,
+    value: f64,
+}
+
+impl Best {
+    /// Goes on by steps to the side as long as that is better; where the parabola through the last three has its top.
+    fn climb(&mut self, step: f64, mut sharpness: impl FnMut(f64) -> f64) -> f64 {
+        let (mut left, mut right) = (sharpness(self.angle - step), sharpness(self.angle + step));
+        for _ in 0..MOVES {
+            if left.max(right) <= self.value {
+                break;
+            }
+            if left > right {
+                (right, *self) = (self.value, Self { angle: self.angle - step, value: left });
+                left = sharpness(self.angle - step);
+            } else {
+                (left, *self) = (self.value, Self { angle: self.angle + step, value: right });
+                right = sharpness(self.angle + step);
+            }
+        }
+        let bend = left - 2.0 * self.value + right;
+        let off = if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 };
+        self.angle + step * off
+    }
+}
+
+/// About so many of the pixels as a sample has, by where they are: what changes elsewhere changes nothing of it.
+fn sample(pixels: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    let share = (pixels.len() / SAMPLE + 1).ilog2();
+    let hash = |[x, y]: [u32; 2]| (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77)).wrapping_mul(0xC2B2_AE3D);
+    pixels.iter().copied().filter(|&pixel| u64::from(hash(pixel)) << share >> u32::BITS == 0).collect()
+}
