@@ -47,7 +47,7 @@ def stages(map: Map, threads: int) -> Stages:
         "directions": lambda: gp.find_directions(map, gradients, threads=threads),
         "radiograms": lambda: gp.find_radiograms(map, directions, gradients, threads=threads),
         "lines": lambda: gp.find_lines(survey.radiograms),
-        "subdivision": lambda: gp.subdivide(map, directions, lines),
+        "subdivision": lambda: gp.subdivide(map, directions, lines, threads=threads),
         "occupancy": lambda: gp.find_occupancy(map, directions, lines, gradients, threads=threads),
         "walls": lambda: gp.find_walls(cut, occupancy),
         "adjacency": lambda: gp.find_adjacency(cut, walls),

@@ -246,7 +246,7 @@ def find_lines(radiograms: list[Radiogram], **parameters: Any) -> Lines:
     return made(Lines, run(_core.find_lines, given, named(parameters)))
 
 
-def subdivide(map: Map, directions: Directions, lines: Lines) -> Subdivision:
+def subdivide(map: Map, directions: Directions, lines: Lines, *, threads: int | None = None) -> Subdivision:
     """II-C: vertices, edges and faces of all lines taken across the map.
 
     Parameters
@@ -255,6 +255,8 @@ def subdivide(map: Map, directions: Directions, lines: Lines) -> Subdivision:
         The occupancy grid, of which the frame alone counts.
     directions, lines
         Those found, or `Directions.of` angles in radians and `Lines.of` offsets in metres.
+    threads
+        At most so many; all cores by default. Any number gives the same subdivision.
 
     Returns
     -------
@@ -268,7 +270,7 @@ def subdivide(map: Map, directions: Directions, lines: Lines) -> Subdivision:
     """
     grid = layout(needs(Map, "map", map))
     given = taken(Directions, "directions", directions), taken(Lines, "lines", lines)
-    return made(Subdivision, run(_core.subdivide, grid, *given))
+    return made(Subdivision, run(_core.subdivide, grid, *given, cores(threads)))
 
 
 def find_occupancy(

@@ -167,11 +167,15 @@ mod _core {
         layout: Layout<'py>,
         directions: &Bound<'py, PyDict>,
         lines: &Bound<'py, PyDict>,
+        threads: usize,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (directions, lines) = convert::lines_of(directions, lines)?;
         let frame = layout.frame();
-        let made = arrangement::arrange(&frame, &directions.angles, &lines);
-        convert::from_subdivision(py, Subdivision::new(&frame, made))
+        let made = py.detach(|| {
+            let made = arrangement::arrange(&frame, &directions.angles, &lines, threads);
+            Subdivision::new(&frame, made, threads)
+        });
+        convert::from_subdivision(py, made)
     }
 
     /// Every broken invariant of a subdivision.
@@ -193,7 +197,7 @@ mod _core {
     ) -> PyResult<Bound<'py, PyArray2<i64>>> {
         let (directions, lines) = convert::lines_of(directions, lines)?;
         let made = layout.with_part(py, held, [rows, (0, 0)], 0, |grid, [rows, _]| {
-            let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines);
+            let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines, threads);
             FaceSums::new(grid, &arrangement, rows, threads)
         })?;
         convert::from_sums(py, &made)
@@ -214,7 +218,7 @@ mod _core {
         let gradients = convert::gradients_on(gradients, &layout.frame())?;
         let parameters = convert::parameters(parameters)?;
         let made = layout.with_grid(py, |grid| {
-            let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines);
+            let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines, threads);
             let sums = FaceSums::new(grid, &arrangement, 0..grid.frame.height, threads);
             occupancy::find_occupancy(&grid.frame, &sums, &arrangement, &directions, &lines, &gradients, &parameters)
         })?;
@@ -263,7 +267,8 @@ mod _core {
         let (directions, lines) = convert::lines_of(directions, lines)?;
         let frame = layout.frame();
         let (gradients, parameters) = (convert::gradients_on(gradients, &frame)?, convert::parameters(parameters)?);
-        let subdivision = Subdivision::new(&frame, arrangement::arrange(&frame, &directions.angles, &lines));
+        let arrangement = arrangement::arrange(&frame, &directions.angles, &lines, threads);
+        let subdivision = Subdivision::new(&frame, arrangement, threads);
         let (occupancy, walls) = (convert::occupancy(occupancy)?, convert::walls(walls)?);
         let states = occupancy.states.len().min(occupancy.faces.len());
         convert::demand_subdivision(&subdivision, states, occupancy.edges.len().min(walls.cogent.len()))?;

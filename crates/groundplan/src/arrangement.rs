@@ -5,6 +5,7 @@
 //! they are far from a tie. Lines of one direction are parallel, so they cross any other line in the order of their
 //! offsets: nothing is sorted that comes sorted, and the cost grows with what is made.
 
+use crate::bands::each;
 use crate::grid::Frame;
 use crate::lines::Lines;
 use std::cmp::Ordering;
@@ -13,6 +14,8 @@ use std::cmp::Ordering;
 const BITS: u32 = 26;
 /// Floats closer than this many pixels are asked again exactly.
 const TIE_PIXELS: f64 = 1e-6;
+/// So many crossings are worth a thread's while.
+const SHARE: usize = 1 << 14;
 /// No id: a border edge's line, the outside's face.
 pub const NONE: u32 = u32::MAX;
 
@@ -84,7 +87,7 @@ pub struct Arrangement {
 
 /// Arranges the lines; those that do not cross the map's interior get no edges.
 #[must_use]
-pub fn arrange(frame: &Frame, angles: &[f64], lines: &Lines) -> Arrangement {
+pub fn arrange(frame: &Frame, angles: &[f64], lines: &Lines, threads: usize) -> Arrangement {
     let normals: Vec<[i64; 2]> = angles.iter().map(|&angle| normal(frame.angle_to_grid(angle))).collect();
     let scale = (1u64 << BITS) as f64;
     let lattice = |(&direction, &offset): (&u32, &f64)| {
@@ -93,7 +96,7 @@ pub fn arrange(frame: &Frame, angles: &[f64], lines: &Lines) -> Arrangement {
         LatticeLine { a, b, c: c.round() as i64 }
     };
     let lattice: Vec<LatticeLine> = lines.directions.iter().zip(&lines.offsets).map(lattice).collect();
-    Builder::new(frame.width as i64, frame.height as i64, lattice).build()
+    Builder::new(frame.width as i64, frame.height as i64, lattice).build(threads)
 }
 
 /// Normal of a direction on the lattice. The y part is never negative, nor are both zero.
@@ -131,18 +134,6 @@ struct Builder {
     rows_below: Vec<u32>,
     /// Union-find over vertices: three lines through a point are one vertex. Empty until any two were found to be one.
     same: Vec<u32>,
-}
-
-/// The vertices along each line; the n-th line's end at `ends[n + 1]`.
-struct Chains {
-    vertices: Vec<u32>,
-    ends: Vec<usize>,
-}
-
-impl Chains {
-    fn with_room(lines: usize, crossings: usize) -> Self {
-        Self { vertices: Vec::with_capacity(crossings + 2 * lines), ends: vec![0] }
-    }
 }
 
 /// Where a line meets the border: side (0 bottom, 1 right, 2 top, 3 left) and the point.
@@ -274,7 +265,7 @@ impl Builder {
         Run { first: first as u32, count: last.saturating_sub(first) as u32, vertex: 0 }
     }
 
-    fn build(mut self) -> Arrangement {
+    fn build(mut self, threads: usize) -> Arrangement {
         // Crossings: one vertex for each pair of lines, made from the earlier family's side.
         let families = std::mem::take(&mut self.families);
         let count = families.len();
@@ -297,16 +288,7 @@ impl Builder {
         let room = crossings as usize + 2 * self.lines.len() + 4;
         self.vertices.reserve_exact(room);
         self.rows_below.reserve_exact(room);
-        for (f, family) in families.iter().enumerate() {
-            for &n in &family.members {
-                for (g, other) in families.iter().enumerate().skip(f + 1) {
-                    let run = &runs[n as usize * count + g];
-                    for m in run.first..run.first + run.count {
-                        self.add_vertex(self.crossing(n, other.members[m as usize]));
-                    }
-                }
-            }
-        }
+        self.add_crossings(&families, &runs, crossings as usize, threads);
         // Ends on the border, going round; those in one place are one vertex, corners among them.
         let mut border: Vec<(End, u32)> = Vec::new();
         let (w, h) = (i128::from(self.width), i128::from(self.height));
@@ -331,7 +313,14 @@ impl Builder {
             }
         }
         // The vertices along each line, families merged in the order the line meets them.
-        let mut chains = Chains::with_room(self.lines.len(), 2 * crossings as usize);
+        let room = 2 * crossings as usize + self.lines.len() + border.len();
+        let mut made = Arrangement {
+            edges: Vec::with_capacity(room),
+            edge_lines: Vec::with_capacity(room),
+            line_edges: Vec::with_capacity(self.lines.len()),
+            ..Arrangement::default()
+        };
+        let mut chain = Vec::new();
         let mut sequences: Vec<Vec<(u32, u32)>> = vec![Vec::new(); count.saturating_sub(1)];
         let family_of = {
             let mut of = vec![None; self.lines.len()];
@@ -343,6 +332,7 @@ impl Builder {
             of
         };
         for (n, of) in family_of.iter().enumerate() {
+            let start = made.edges.len() as u32;
             if let &Some((f, place)) = of {
                 let others = families.iter().enumerate().filter(|(g, _)| *g != f);
                 for (sequence, (g, other)) in sequences.iter_mut().zip(others) {
@@ -365,13 +355,58 @@ impl Builder {
                     }
                 }
                 let [first, last] = end_vertices[n];
-                chains.vertices.push(first);
-                self.merge_sequences(n as u32, &sequences, &mut chains.vertices);
-                chains.vertices.push(last);
+                chain.clear();
+                chain.push(first);
+                self.merge_sequences(n as u32, &sequences, &mut chain);
+                chain.push(last);
+                made.edges.extend(chain.windows(2).map(|pair| [pair[0], pair[1]]));
             }
-            chains.ends.push(chains.vertices.len());
+            made.edge_lines.resize(made.edges.len(), n as u32);
+            made.line_edges.push(start..made.edges.len() as u32);
         }
-        self.assemble(&chains, &border)
+        self.assemble(made, &border)
+    }
+
+    /// The vertices where lines cross, `crossings` of them: runs of an earlier family's lines with later families.
+    fn add_crossings(&mut self, families: &[Family], runs: &[Run], crossings: usize, threads: usize) {
+        self.vertices.resize(crossings, [0.0; 2]);
+        self.rows_below.resize(crossings, 0);
+        let (mut vertices, mut rows) = (std::mem::take(&mut self.vertices), std::mem::take(&mut self.rows_below));
+        let (mut vertices_left, mut rows_left) = (vertices.as_mut_slice(), rows.as_mut_slice());
+        let mut parts = Vec::new();
+        for (f, family) in families.iter().enumerate() {
+            let runs_of = |n: u32| &runs[n as usize * families.len()..][f + 1..families.len()];
+            let count = |n: u32| runs_of(n).iter().map(|run| run.count as usize).sum::<usize>();
+            let mut first = 0;
+            while first < family.members.len() {
+                // As many lines as are worth a thread's while.
+                let (mut last, mut room) = (first, 0);
+                while last < family.members.len() && room < SHARE {
+                    room += count(family.members[last]);
+                    last += 1;
+                }
+                let (to, of_rows);
+                (to, vertices_left) = vertices_left.split_at_mut(room);
+                (of_rows, rows_left) = rows_left.split_at_mut(room);
+                parts.push((f, first..last, to, of_rows));
+                first = last;
+            }
+        }
+        each(parts, threads, |(f, members, vertices, rows)| {
+            let mut places = vertices.iter_mut().zip(rows);
+            for &n in &families[f].members[members] {
+                for (g, other) in families.iter().enumerate().skip(f + 1) {
+                    let run = &runs[n as usize * families.len() + g];
+                    let crossed = &other.members[run.first as usize..(run.first + run.count) as usize];
+                    for (&m, (vertex, rows)) in crossed.iter().zip(&mut places) {
+                        let point = self.crossing(n, m);
+                        *vertex = point.to_floats();
+                        *rows = point.rows_below(vertex[1], self.height as usize);
+                    }
+                }
+            }
+        });
+        (self.vertices, self.rows_below) = (vertices, rows);
     }
 
     /// Merges sequences of (vertex, crossing line) along line `n`; crossings in one place become one vertex.
@@ -423,27 +458,25 @@ impl Builder {
         if forwards { along } else { along.reverse() }
     }
 
-    /// Chains of vertices -> edges, half-edges around the vertices, faces.
-    fn assemble(mut self, chains: &Chains, border: &[(End, u32)]) -> Arrangement {
+    /// Edges along the lines -> those of the border too, half-edges around the vertices, faces.
+    fn assemble(mut self, mut made: Arrangement, border: &[(End, u32)]) -> Arrangement {
         let ids = self.drop_merged();
         let id = |n: u32| if ids.is_empty() { n } else { ids[n as usize] };
-        let room = chains.vertices.len() + border.len();
-        let mut made = Arrangement {
-            edges: Vec::with_capacity(room),
-            edge_lines: Vec::with_capacity(room),
-            line_edges: Vec::with_capacity(self.lines.len()),
-            ..Arrangement::default()
-        };
-        for (n, ends) in chains.ends.windows(2).enumerate() {
-            let start = made.edges.len() as u32;
-            for pair in chains.vertices[ends[0]..ends[1]].windows(2) {
-                let [p, q] = [id(pair[0]), id(pair[1])];
-                if p != q {
-                    made.edges.push([p, q]);
-                    made.edge_lines.push(n as u32);
+        if !ids.is_empty() {
+            let mut kept = 0;
+            for edges in &mut made.line_edges {
+                let start = kept as u32;
+                for n in edges.start as usize..edges.end as usize {
+                    let [p, q] = made.edges[n].map(id);
+                    if p != q {
+                        (made.edges[kept], made.edge_lines[kept]) = ([p, q], made.edge_lines[n]);
+                        kept += 1;
+                    }
                 }
+                *edges = start..kept as u32;
             }
-            made.line_edges.push(start..made.edges.len() as u32);
+            made.edges.truncate(kept);
+            made.edge_lines.truncate(kept);
         }
         let mut sides = Vec::with_capacity(border.len());
         for (n, (end, p)) in border.iter().enumerate() {

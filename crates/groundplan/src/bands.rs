@@ -1,6 +1,7 @@
 //! Passes over pixels as sums over row bands: any number of threads gives the same bytes.
 
 use std::ops::Range;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::{Scope, ScopedJoinHandle};
 
@@ -53,6 +54,17 @@ impl<T> Later<'_, T> {
             Self::Started(handle) => handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
         }
     }
+}
+
+/// Works off tasks that have nothing to do with one another, such as the parts of what is filled.
+pub fn each<T: Send>(tasks: Vec<T>, threads: usize, work: impl Fn(T) + Sync) {
+    if threads <= 1 || tasks.len() <= 1 {
+        return tasks.into_iter().for_each(work);
+    }
+    let (count, tasks) = (tasks.len(), Mutex::new(tasks.into_iter()));
+    // Where a task has panicked, what is left is not begun.
+    let next = || tasks.lock().ok().and_then(|mut tasks| tasks.next());
+    fold(count, threads, || (), |(), _| next().into_iter().for_each(&work), |(), ()| ());
 }
 
 fn band(n: usize, rows: usize) -> Range<usize> {

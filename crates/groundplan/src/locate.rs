@@ -48,7 +48,7 @@ impl Locator {
     /// Of the faces that the lines make, numbered as in their subdivision.
     #[must_use]
     pub fn new(frame: &Frame, angles: &[f64], lines: &Lines) -> Self {
-        let arrangement = arrange(frame, angles, lines);
+        let arrangement = arrange(frame, angles, lines, 1);
         let used = |n: &usize| !arrangement.line_edges[*n].is_empty();
         let mut crossing: Vec<usize> = (0..arrangement.lines.len()).filter(used).collect();
         crossing.sort_by_key(|&n| (arrangement.lines[n].a, arrangement.lines[n].b, arrangement.lines[n].c));

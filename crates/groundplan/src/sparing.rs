@@ -29,8 +29,8 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads
     let frame = &grid.frame;
     let gradients = given.gradients.unwrap_or_else(|| find_gradients(grid, parameters, threads));
     let count = gradients.pixels.len();
-    let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters));
-    let radiograms = find_radiograms(frame, &gradients, &directions, parameters);
+    let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters, threads));
+    let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
     let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
     let sight = {
         let evidence =
@@ -44,7 +44,7 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads
     let evidence = Evidence { grid, gradients: &specks, directions: &directions, lines: &lines, parameters, threads };
 
     let sketch = Sketch::new(&evidence, sight);
-    let arranged = || arrange(frame, &directions.angles, &lines);
+    let arranged = || arrange(frame, &directions.angles, &lines, threads);
     let sums = given.sums;
     let measured = |arrangement: &_| match &sums {
         Some(sums) if sums.fits(arrangement) => Occupancy::of_faces(sums),
@@ -55,7 +55,7 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads
         let arrangement = arranged();
         let states = measured(&arrangement).states;
         let occupancy = Occupancy { states, ..Occupancy::default() };
-        let centres = Subdivision::new(frame, arrangement).centres;
+        let centres = Subdivision::new(frame, arrangement, threads).centres;
         let subdivision = Subdivision { centres, ..Subdivision::default() };
         let division = Division { subdivision: &subdivision, occupancy: &occupancy, adjacency: &Adjacency::default() };
         let labels = find_labels_in(&evidence, &division, sketch);
@@ -72,7 +72,7 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads
     }
     let covered = coverage.of_edges(&arrangement);
     let occupancy = measured(&arrangement).with(covered);
-    let subdivision = Subdivision::new(frame, arrangement);
+    let subdivision = Subdivision::new(frame, arrangement, threads);
     let walls = find_walls(&subdivision, &occupancy, parameters);
     let survey = Survey {
         patterns: find_patterns(&directions, &labels),

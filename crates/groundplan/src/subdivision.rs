@@ -1,6 +1,7 @@
 //! II-C: Vertices, Edges, Faces and N of the paper; and every invariant in one place.
 
 use crate::arrangement::{Arrangement, NONE};
+use crate::bands::each;
 use crate::grid::{Frame, tidy};
 
 /// The subdivision: what the lines cut the map into. Ragged lists are values with offsets.
@@ -28,22 +29,43 @@ pub struct Subdivision {
     pub map_area: f64,
 }
 
+/// So many faces or vertices are worth a thread's while.
+const SHARE: usize = 1 << 14;
+
 impl Subdivision {
     /// From an arrangement, with coordinates in the map frame. Takes its lists over: they are most of the memory.
     #[must_use]
-    pub fn new(frame: &Frame, arrangement: Arrangement) -> Self {
+    pub fn new(frame: &Frame, arrangement: Arrangement, threads: usize) -> Self {
         let faces = arrangement.face_count();
-        let vertices = arrangement.vertices.iter().map(|&v| frame.to_metres(v).map(tidy)).collect();
-        let mut face_vertices = Vec::with_capacity(arrangement.face_halves.len());
-        let (mut centres, mut areas) = (Vec::with_capacity(faces), Vec::with_capacity(faces));
-        for face in 0..faces {
-            let start = face_vertices.len();
-            face_vertices.extend(arrangement.around(face).iter().map(|&half| arrangement.start(half)));
-            // From the vertices before they are rounded: a sliver's centre is lost with the rounding.
-            let (area, centre) = area_and_centroid(&arrangement.vertices, &face_vertices[start..]);
-            areas.push(tidy(area * frame.resolution.powi(2)));
-            centres.push(frame.to_metres(centre).map(tidy));
+        let mut face_vertices = vec![0; arrangement.face_halves.len()];
+        let (mut centres, mut areas) = (vec![[0.0; 2]; faces], vec![0.0; faces]);
+        // Ragged: each part's vertices are cut off what is left of them.
+        let (mut left, mut parts) = (face_vertices.as_mut_slice(), Vec::with_capacity(faces / SHARE + 1));
+        for (n, (centres, areas)) in centres.chunks_mut(SHARE).zip(areas.chunks_mut(SHARE)).enumerate() {
+            let offsets = &arrangement.face_offsets[n * SHARE..=n * SHARE + areas.len()];
+            let count = (offsets[offsets.len() - 1] - offsets[0]) as usize;
+            let (vertices, rest) = left.split_at_mut(count);
+            left = rest;
+            parts.push((offsets, vertices, centres, areas));
         }
+        each(parts, threads, |(offsets, vertices, centres, areas)| {
+            let first = offsets[0] as usize;
+            let halves = &arrangement.face_halves[first..first + vertices.len()];
+            vertices.iter_mut().zip(halves).for_each(|(vertex, &half)| *vertex = arrangement.start(half));
+            for ((ends, centre), area) in offsets.windows(2).zip(centres).zip(areas) {
+                let around = &vertices[ends[0] as usize - first..ends[1] as usize - first];
+                // From the vertices before they are rounded: a sliver's centre is lost with the rounding.
+                let (pixels, middle) = area_and_centroid(&arrangement.vertices, around);
+                *area = tidy(pixels * frame.resolution.powi(2));
+                *centre = frame.to_metres(middle).map(tidy);
+            }
+        });
+        let mut vertices = arrangement.vertices;
+        each(vertices.chunks_mut(SHARE).collect(), threads, |part| {
+            for vertex in part {
+                *vertex = frame.to_metres(*vertex).map(tidy);
+            }
+        });
         Self {
             vertices,
             edge_vertices: arrangement.edges,

@@ -144,12 +144,12 @@ impl Divided {
     fn new(evidence: &Evidence, given: Option<FaceSums>) -> Self {
         let Evidence { grid, gradients, directions, lines, parameters, threads } = *evidence;
         let frame = &grid.frame;
-        let arrangement = arrange(frame, &directions.angles, lines);
+        let arrangement = arrange(frame, &directions.angles, lines, threads);
         let fits = |sums: &FaceSums| sums.fits(&arrangement);
         let sums = given.filter(fits).unwrap_or_else(|| FaceSums::new(grid, &arrangement, 0..frame.height, threads));
         let occupancy = find_occupancy(frame, &sums, &arrangement, directions, lines, gradients, parameters);
         drop(sums);
-        let subdivision = Subdivision::new(frame, arrangement);
+        let subdivision = Subdivision::new(frame, arrangement, threads);
         let walls = find_walls(&subdivision, &occupancy, parameters);
         let adjacency = find_adjacency(&subdivision.edge_faces, &walls.cogent);
         Self { subdivision, occupancy, walls, adjacency }

@@ -145,8 +145,8 @@ impl Case {
             widths: vec![0.0; count],
             min_amplitude: 0.0,
         };
-        let arrangement = arrange(&self.frame, &self.angles, &lines);
-        let subdivision = Subdivision::new(&self.frame, arrangement.clone());
+        let arrangement = arrange(&self.frame, &self.angles, &lines, 1);
+        let subdivision = Subdivision::new(&self.frame, arrangement.clone(), 1);
         Arranged { arrangement, subdivision }
     }
 
