@@ -71,7 +71,7 @@ const FURTHER: i32 = 6;
 /// So many pixels say where the sharpest is; how sharp it is there takes all.
 const SAMPLE: usize = 4096;
 /// Steps get smaller until what is furthest away moves by no more than so many pixels.
-const FINEST_PIXELS: f64 = 0.5;
+const FINEST_PIXELS: f64 = 0.1;
 /// How often a step is taken again, at most.
 const MOVES: usize = 4;
 
