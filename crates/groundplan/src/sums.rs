@@ -84,6 +84,9 @@ fn pixel_under(grid: &Grid, arrangement: &Arrangement, face: usize, rows: &Range
     })
 }
 
+/// Pixels that are looked at together.
+const WORD: usize = 8;
+
 /// Sums of each face: what lies left of its right side less what lies left of its left side, row by row. A pixel
 /// belongs to the face that its centre lies in; a centre on a line belongs to the right of it or above.
 fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads: usize) -> Vec<Sums> {
@@ -109,16 +112,26 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads
         empty,
         |totals, band| {
             let band = band.start + rows.start..band.end + rows.start;
-            let mut left = vec![0u128; width + 1];
+            let mut left = vec![0u128; width / WORD + 1];
             let crossings = Crossings::new(arrangement, band.clone());
             for y in band {
+                let row = grid.row(y);
+                let words = row.chunks_exact(WORD);
                 let mut sum = 0u128;
-                for (entry, &value) in left[1..].iter_mut().zip(grid.row(y)) {
-                    sum += packed[usize::from(value)];
-                    *entry = sum;
+                for (before, word) in left.iter_mut().zip(words) {
+                    *before = sum;
+                    // Eight pixels alike are the most of a map.
+                    if *word == [word[0]; WORD] {
+                        sum += packed[usize::from(word[0])] << WORD.ilog2();
+                    } else {
+                        sum += word.iter().map(|&value| packed[usize::from(value)]).sum::<u128>();
+                    }
                 }
+                left[width / WORD] = sum;
                 crossings.of_row(arrangement, y, width, |half, column| {
-                    let sums = unpack(left[column], column as i64);
+                    let rest = &row[column - column % WORD..column];
+                    let sum = left[column / WORD] + rest.iter().map(|&value| packed[usize::from(value)]).sum::<u128>();
+                    let sums = unpack(sum, column as i64);
                     for (half, sign) in [(half, 1), (Arrangement::twin(half), -1)] {
                         let face = arrangement.face(half);
                         if face != NONE {
