@@ -118,3 +118,20 @@ def test_edge_pixels_are_taken_with_a_neighbour_that_is_not() -> None:
     expected = sorted(zip(columns.tolist(), (len(picture) - 1 - rows).tolist(), strict=True))
     found = groundplan.find_gradients(groundplan.from_array(picture, RESOLUTION)).pixels
     assert sorted(map(tuple, found.tolist())) == expected
+
+
+@pytest.mark.parametrize("radius", [7, 8, 20, 28, 32])
+def test_a_gradient_is_that_of_the_scatter_of_the_edge_pixels_in_a_round_window(radius: int) -> None:
+    picture = ZOO["turned_warehouse"]()
+    picture[np.random.default_rng(radius).random(picture.shape) < 0.2] = zoo.OCCUPIED
+    map = groundplan.from_array(picture, RESOLUTION)
+    found = groundplan.find_gradients(map, gradients_radius=radius * RESOLUTION)
+    pixels = found.pixels.astype(np.int64)
+    for n in range(0, len(pixels), len(pixels) // 300):
+        apart = pixels - pixels[n]
+        x, y = apart[(apart**2).sum(axis=1) <= radius**2].T
+        count = len(x)
+        xx, xy, yy = (count * (a * b).sum() - a.sum() * b.sum() for a, b in ((x, x), (x, y), (y, y)))
+        assert found.magnitudes[n] == np.floor(255 * np.hypot(xx - yy, 2 * xy) / (xx + yy) + 0.5)
+        off = found.angles[n] - np.arctan2(2 * xy, xx - yy) / 2
+        assert abs(np.sin(off)) < 1e-6

@@ -93,8 +93,10 @@ pub fn find_gradients_in(
         let some = first..rows.end.min(first + TOGETHER);
         let parts = map_bands(some.len(), threads, |band| {
             let mut part = Gradients::default();
-            for y in shifted(band, some.start) {
-                row_gradients(&edges, y, &columns, radius, &mut part);
+            let band = shifted(band, some.start);
+            let bits = Bits::new(&edges, &band, &across, radius);
+            for y in band {
+                row_gradients(&edges, &bits, y, &columns, &mut part);
             }
             part
         });
@@ -158,45 +160,125 @@ fn edge_pixels(grid: &Grid, band: Range<usize>, among: &Range<usize>) -> Vec<Vec
     .collect()
 }
 
-/// Gradients of one row's edge pixels among some columns, from the scatter of the edge pixels within `radius`. The
+/// The edge pixels of a band of rows and of those within the radius of it, a bit for each, and windows upon them.
+struct Bits {
+    /// The lowest row and the leftmost column, of the first byte after the margin.
+    first: usize,
+    left: usize,
+    /// Row after row, with a margin at both ends wider than any window.
+    bytes: Vec<u8>,
+    stride: usize,
+    radius: usize,
+    /// Of the rows from the lowest to the highest in the window: which of its columns are in it.
+    masks: Vec<[u64; 2]>,
+}
+
+/// Bytes beside the bits of a row.
+const MARGIN: usize = 16;
+/// Bytes of a window that are taken from one word: the word's last are lost when its first bits are shifted out.
+const TAKEN: usize = 7;
+
+/// How many bits of a byte are set, the sum of their places, and that of the squares of their places, in the low 16
+/// bits, the next 24 and the upper 24, where the sums over the largest window fit; the byte's first place is eight times
+/// its number in the window.
+static MOMENTS: [[u64; 256]; 2 * TAKEN] = {
+    let mut all = [[0u64; 256]; 2 * TAKEN];
+    let mut n = 0;
+    while n < 2 * TAKEN * 256 * 8 {
+        let (number, byte, bit) = (n / 2048, n / 8 % 256, n % 8);
+        if byte >> bit & 1 == 1 {
+            let place = (8 * number + bit) as u64;
+            all[number][byte] += 1 | place << 16 | (place * place) << 40;
+        }
+        n += 1;
+    }
+    all
+};
+
+impl Bits {
+    fn new(edges: &Edges, band: &Range<usize>, among: &Range<usize>, radius: usize) -> Self {
+        let rows = band.start.saturating_sub(radius).max(edges.first)..band.end + radius;
+        let rows = rows.start..rows.end.min(edges.first + edges.rows.len());
+        let stride = among.len().div_ceil(8) + 2 * MARGIN;
+        let mut bytes = vec![0; rows.len() * stride];
+        for (bytes, columns) in
+            bytes.chunks_mut(stride).zip(&edges.rows[rows.start - edges.first..rows.end - edges.first])
+        {
+            for &x in columns {
+                let x = x as usize - among.start;
+                bytes[MARGIN + x / 8] |= 1 << (x % 8);
+            }
+        }
+        let mask = |row: usize| {
+            let reach = (radius.pow(2) - radius.abs_diff(row).pow(2)).isqrt();
+            let whole = ((1u128 << (2 * reach + 1)) - 1) << (radius - reach);
+            [whole as u64 & ((1 << (8 * TAKEN)) - 1), (whole >> (8 * TAKEN)) as u64]
+        };
+        Self {
+            first: rows.start,
+            left: among.start,
+            bytes,
+            stride,
+            radius,
+            masks: (0..=2 * radius).map(mask).collect(),
+        }
+    }
+
+    /// Of the edge pixels around one: how many there are, the sums of x, y, x x, x y and y y, counted from the window's
+    /// lower left.
+    fn sums(&self, x: usize, y: usize) -> [i64; 6] {
+        // From the lowest row that is there, which may lie above the window's.
+        let below = (y - self.first).min(self.radius);
+        let lowest = y - self.first - below;
+        let place = x - self.left + 8 * MARGIN - self.radius;
+        let (byte, shift) = (place / 8, place % 8);
+        let rows = self.bytes.chunks_exact(self.stride).skip(lowest);
+        let narrow = self.radius < 8;
+        let (mut sums, mut by_row, mut by_square) = (0u64, [0u64; 2], 0u64);
+        for (row, (bytes, mask)) in rows.zip(&self.masks[self.radius - below..]).enumerate() {
+            let word = |from: usize| {
+                let bytes: [u8; 8] = bytes[from..from + 8].try_into().unwrap_or_default();
+                u64::from_le_bytes(bytes) >> shift
+            };
+            let near = word(byte) & mask[0];
+            let mut found = if narrow {
+                MOMENTS[0][near as usize & 255] + MOMENTS[1][near as usize >> 8 & 255]
+            } else {
+                moments(near, &MOMENTS[..TAKEN])
+            };
+            if mask[1] != 0 {
+                found += moments(word(byte + TAKEN) & mask[1], &MOMENTS[TAKEN..]);
+            }
+            let row = row as u64;
+            sums += found;
+            let count = found & 0xffff;
+            by_row = [by_row[0] + count * row, by_row[1] + (found >> 16 & 0xff_ffff) * row];
+            by_square += count * row * row;
+        }
+        [sums & 0xffff, sums >> 16 & 0xff_ffff, by_row[0], sums >> 40, by_row[1], by_square].map(|sum| sum as i64)
+    }
+}
+
+/// Of a word's bits, from the first byte on that tables are given for.
+fn moments(mut word: u64, tables: &[[u64; 256]]) -> u64 {
+    let mut sum = 0;
+    for table in tables {
+        if word == 0 {
+            break;
+        }
+        sum += table[word as usize & 255];
+        word >>= 8;
+    }
+    sum
+}
+
+/// Gradients of one row's edge pixels among some columns, from the scatter of the edge pixels within the radius. The
 /// window is round: of a wall's two faces a square one would cut off unequal ends, and so turn them towards its own
 /// corners.
-fn row_gradients(edges: &Edges, y: usize, among: &Range<usize>, radius: usize, out: &mut Gradients) {
-    let Edges { first, rows } = edges;
+fn row_gradients(edges: &Edges, bits: &Bits, y: usize, among: &Range<usize>, out: &mut Gradients) {
     let own = edges.among(y, among);
-    if own.is_empty() {
-        return;
-    }
-    let around = y.saturating_sub(radius).max(*first)..(y + radius + 1).min(first + rows.len());
-    let reaches: Vec<i64> =
-        around.clone().map(|other| (radius.pow(2) - y.abs_diff(other).pow(2)).isqrt() as i64).collect();
-    let mut starts = vec![0usize; around.len()];
     for &column in own {
-        let x = i64::from(column);
-        let (mut n, mut sx, mut sy, mut sxx, mut sxy, mut syy) = (0i64, 0i64, 0i64, 0i64, 0i64, 0i64);
-        for ((start, &reach), other) in starts.iter_mut().zip(&reaches).zip(around.clone()) {
-            let row = &rows[other - first];
-            while *start < row.len() && i64::from(row[*start]) < x - reach {
-                *start += 1;
-            }
-            let dy = other as i64 - y as i64;
-            let (mut count, mut sum, mut squares) = (0, 0, 0);
-            for &near in &row[*start..] {
-                let dx = i64::from(near) - x;
-                if dx > reach {
-                    break;
-                }
-                count += 1;
-                sum += dx;
-                squares += dx * dx;
-            }
-            n += count;
-            sx += sum;
-            sxx += squares;
-            sy += count * dy;
-            sxy += sum * dy;
-            syy += count * dy * dy;
-        }
+        let [n, sx, sy, sxx, sxy, syy] = bits.sums(column as usize, y);
         // Central second moments, all times n: still integers.
         let (xx, xy, yy) = (n * sxx - sx * sx, n * sxy - sx * sy, n * syy - sy * sy);
         let spread = (xx + yy) as f64;
