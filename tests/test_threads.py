@@ -52,9 +52,9 @@ def test_more_edge_pixels_than_one_thread_projects_at_a_time_give_the_same_direc
 @pytest.mark.parametrize("angles", [[0.1, -1.4], [0.1, -1.4, 0.9]])
 def test_more_faces_than_one_thread_makes_at_a_time_are_the_same(angles: list[float]) -> None:
     map = groundplan.from_array(np.full((900, 700), zoo.FREE, dtype=np.uint8), RESOLUTION)
-    offsets = np.sort(np.random.default_rng(3).uniform(-50, 50, 400))
+    offsets = np.sort(np.random.default_rng(3).uniform(-50, 50, 800))
     directions = groundplan.Directions.of(np.array(angles))
-    lines = groundplan.Lines.of(np.repeat(np.arange(len(angles)), 400), np.tile(offsets, len(angles)))
+    lines = groundplan.Lines.of(np.repeat(np.arange(len(angles)), 800), np.tile(offsets, len(angles)))
     one, four = (groundplan.subdivide(map, directions, lines, threads=n) for n in (1, 4))
     assert len(one.areas) > 2 << 14
     assert one == four
