@@ -38,6 +38,8 @@ const CONTRAST: f64 = 3.0;
 const OTHERS_AMONG_CONTROLS: usize = 4;
 /// Where there would be one direction only, a second one needs this share of its structure.
 const SECOND: f64 = 0.04;
+/// And one that is square to the first, to so many degrees, this share.
+const SQUARE: (f64, f64) = (0.3, 0.015);
 /// Directions that are given closer than this are one, radians.
 const CLOSEST: f64 = 1e-6;
 /// While a candidate's angle is known to so many degrees, it may have this share of what will be found.
@@ -77,7 +79,10 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
             found = strong.into_iter().filter(|f| f.exceeds_chance(OTHERS_AMONG_CONTROLS)).collect();
             // A ground plan has two directions, be it only by the ends of its racks.
             if found.len() == 1 {
-                let second = |f: &Candidate| f.metres >= SECOND * strongest && f.exceeds_chance(1);
+                let first = found[0].angle;
+                let is_square = |f: &Candidate| FRAC_PI_2 - angle_between(f.angle, first) <= SQUARE.0.to_radians();
+                let share = |f: &Candidate| if is_square(f) { SQUARE.1 } else { SECOND };
+                let second = |f: &Candidate| f.metres >= share(f) * strongest && f.exceeds_chance(1);
                 found.extend(weak.into_iter().find(second));
             }
         }
@@ -133,7 +138,8 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
     let diagonal = libm::hypot(frame.width as f64, frame.height as f64);
     // What is less than this share of the strongest is of no use, unless so many directions were asked for.
-    let least = if parameters.directions_count.is_some() { 0.0 } else { parameters.directions_min_weight.min(SECOND) };
+    let least =
+        if parameters.directions_count.is_some() { 0.0 } else { parameters.directions_min_weight.min(SQUARE.1) };
     let mut strongest: f64 = 0.0;
     let mut found: Vec<Candidate> = Vec::new();
     let mut tried: Vec<f64> = Vec::new();

@@ -44,6 +44,9 @@ impl Lines {
 const WIDTHS_PIXELS: (f64, f64) = (1.0, 20.0);
 /// Lines are kept until this share of all that stands out is explained, unless a detail is asked for.
 const EXPLAINED: f64 = 0.97;
+/// Where all lines stand out, the least of them are no noise: what has so much of a typical line, and so many metres, is
+/// kept all the same, such as the ends of a few rows.
+const SHORT: (f64, f64) = (0.02, 2.0);
 /// Detail 1 lets through a line with this share of what the strongest lines have.
 const FINEST: f64 = 0.01;
 
@@ -106,7 +109,10 @@ fn least_amplitude(amplitudes: &[f64], parameters: &Parameters) -> f64 {
     match (parameters.lines_min_amplitude, parameters.lines_detail) {
         (Some(metres), _) => metres,
         (None, Some(detail)) => reaching(amplitudes, 0.5) * libm::pow(FINEST, detail),
-        (None, None) => reaching(amplitudes, EXPLAINED),
+        (None, None) => {
+            let short = SHORT.1.max(SHORT.0 * reaching(amplitudes, 0.5));
+            reaching(amplitudes, EXPLAINED).min(short)
+        }
     }
 }
 

@@ -22,6 +22,8 @@ pub struct Strip {
     pub across: [f64; 2],
     /// What speaks for it less what speaks against it, metres.
     pub score: f64,
+    /// It may be a row of empty bays, unless the rows that it crosses say otherwise.
+    pub bays: bool,
 }
 
 impl Strip {
@@ -107,7 +109,8 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
         let family = Family::new(evidence, views, &views[n]);
         let (whole, parts): (Vec<_>, Vec<_>) = family.candidates(threads).into_iter().partition(|c| c.is_corridor);
         let mut known = family.best(whole, &[]);
-        let ragged = ragged::find(views, &views[n], evidence.parameters, &known, threads);
+        let sure: Vec<Strip> = known.iter().filter(|strip| !strip.bays).cloned().collect();
+        let ragged = ragged::find(views, &views[n], evidence.parameters, &sure, threads);
         // What is no corridor as a whole may be one without what others have of it.
         known.extend(family.best(parts, &[&known[..], &ragged].concat()));
         known.sort_by(|a, b| a.middle().total_cmp(&b.middle()).then(a.along[0].total_cmp(&b.along[0])));
@@ -213,7 +216,7 @@ impl<'a> Family<'a> {
 
     /// Of rivals the best, and what they and those that are known leave of the others.
     fn best(&self, mut candidates: Vec<Candidate>, known: &[Strip]) -> Vec<Strip> {
-        candidates.sort_by(|a, b| b.strip.score.total_cmp(&a.strip.score));
+        candidates.sort_by(|a, b| a.strip.bays.cmp(&b.strip.bays).then(b.strip.score.total_cmp(&a.strip.score)));
         let mut kept = known.to_vec();
         for candidate in candidates {
             let (first, last) = self.range(&candidate.strip);
@@ -312,48 +315,51 @@ impl<'a> Family<'a> {
         let scores: Vec<f64> = columns.iter().map(|c| c.score()).collect();
         let pieces = best_pieces(&scores).into_iter();
         let view = self.view;
+        let width = across[1] - across[0];
         let strip = |(from, to): (usize, usize)| Strip {
             direction: view.direction,
             along: [view.along(first + from), view.along(first + to)],
             across,
             score: scores[from..to].iter().sum::<f64>() * view.cell,
+            bays: self.is_like_bays(&columns[from..to], width),
         };
-        let width = across[1] - across[0];
         let long =
             |(from, to): &(usize, usize)| (to - from) as f64 * view.cell >= self.parameters.labels_min_aspect * width;
         let judged = |(from, to)| (strip((from, to)), self.is_corridor(&columns[from..to], width));
         pieces.filter(long).map(judged).collect()
     }
 
-    /// Walled enough, and by more than posts.
-    fn is_corridor(&self, columns: &[Column], width: f64) -> bool {
-        let count = |is: &dyn Fn(&Column) -> bool| columns.iter().filter(|c| is(c)).count() as f64;
-        let near = count(&|c| c.walled && c.near);
-        let faced = |least: usize| count(&|c| c.walled && c.faces.iter().filter(|f| **f).count() >= least);
-        let weaker = count(&|c| c.walled && c.faces[0]).min(count(&|c| c.walled && c.faces[1]));
-        let length = columns.len() as f64 * self.view.cell;
-        // Between frames that are closed on both sides and go on and on, it is a cross aisle as wide as a bay.
-        let bay = self.pitches.iter().any(|pitch| (BAY_WIDTH.0 * pitch..=BAY_WIDTH.1 * pitch).contains(&width));
-        let closed = near >= WALLED * columns.len() as f64 && faced(2) >= WALLED * near;
-        let long = length >= LONG * width && faced(1) >= FACED_ONCE * near && weaker >= WEAKER * near;
-        // Nor does a wall go on along a row of bays past the ways between the rows.
-        let beside_wall = (0..2).any(|n| count(&|c| c.faces[n]) >= WALL * columns.len() as f64)
-            && weaker >= WEAKER_AT_WALL * columns.len() as f64;
-        let aisle = length >= VERY_LONG * width || long || closed || beside_wall;
-        if bay && !aisle {
+    /// As wide as a bay, and walled no better than a row of empty ones.
+    fn is_like_bays(&self, columns: &[Column], width: f64) -> bool {
+        if !self.pitches.iter().any(|pitch| (BAY_WIDTH.0 * pitch..=BAY_WIDTH.1 * pitch).contains(&width)) {
             return false;
         }
+        let all = columns.len() as f64;
+        let Walled { near, once, twice, weaker } = Walled::new(columns);
+        let length = all * self.view.cell;
+        // Between frames that are closed on both sides and go on and on, it is a cross aisle as wide as a bay.
+        let closed = near >= WALLED * all && twice >= WALLED * near;
+        let long = length >= LONG * width && once >= FACED_ONCE * near && weaker >= WEAKER * near;
+        // Nor does a wall go on along a row of bays past the ways between the rows.
+        let wall = (0..2).any(|n| count(columns, |c| c.faces[n]) >= WALL * all) && weaker >= WEAKER_AT_WALL * all;
+        !(length >= VERY_LONG * width || long || closed || wall)
+    }
+
+    /// Walled enough, and by more than posts.
+    fn is_corridor(&self, columns: &[Column], width: f64) -> bool {
+        let Walled { near, once, twice, .. } = Walled::new(columns);
+        let length = columns.len() as f64 * self.view.cell;
         // Posts alone are a side where racks stand, and elsewhere pillars.
-        let bare = (0..2).map(|n| count(&|c| c.walled && !c.faces[n] && !c.held[n])).fold(0.0, f64::max);
+        let bare = (0..2).map(|n| count(columns, |c| c.walled && !c.faces[n] && !c.held[n])).fold(0.0, f64::max);
         if !self.racked && bare > BARE * columns.len() as f64 {
             return false;
         }
         let structured = if length >= LONG * width {
-            faced(1) >= FACED_LONG * near
+            once >= FACED_LONG * near
         } else {
-            faced(1) >= FACED * near && (faced(2) >= FACED_TWICE * near || faced(1) >= FACED_ONCE * near)
+            once >= FACED * near && (twice >= FACED_TWICE * near || once >= FACED_ONCE * near)
         };
-        let walled = count(&|c| c.walled && c.blocked < NARROWED);
+        let walled = count(columns, |c| c.walled && c.blocked < NARROWED);
         structured && walled >= LEAST_WALLED * columns.len() as f64
     }
 }
@@ -428,6 +434,30 @@ impl Column {
         } else {
             -OPEN
         }) - against
+    }
+}
+
+/// Of a strip's columns so many hold.
+fn count(columns: &[Column], is: impl Fn(&Column) -> bool) -> f64 {
+    columns.iter().filter(|column| is(column)).count() as f64
+}
+
+/// How many of a strip's columns are walled.
+struct Walled {
+    /// Not merely by the gap of a bay on both sides.
+    near: f64,
+    /// With structure of some length on one side at least, and on both.
+    once: f64,
+    twice: f64,
+    /// With such on the side that has less of it.
+    weaker: f64,
+}
+
+impl Walled {
+    fn new(columns: &[Column]) -> Self {
+        let faced = |least: usize| count(columns, |c| c.walled && c.faces.iter().filter(|f| **f).count() >= least);
+        let on = |side: usize| count(columns, |c| c.walled && c.faces[side]);
+        Self { near: count(columns, |c| c.walled && c.near), once: faced(1), twice: faced(2), weaker: on(0).min(on(1)) }
     }
 }
 

@@ -12,6 +12,12 @@ use super::turned::Turned;
 const IN_LINE: (f64, f64) = (0.7, 0.5);
 /// What shares so much of a row's depth leads into it.
 const ENTERS: f64 = 0.35;
+/// A strip is a way through all the rows that it finds free when, by how seldom each of them is free elsewhere, fewer
+/// such than this would be expected of all places; and one that is like bays only then.
+const EXPECTED: (f64, f64) = (0.05, 0.005);
+/// Where posts recur along the rows, what crosses them is no more than so many times as long as the shorter of the two
+/// corridors beside a row: short ones between the goods of racks do not make bays of the aisles.
+const LONGER: f64 = 4.0;
 /// What goes on so far beyond the rows, metres, is a way there.
 const BEYOND: f64 = 2.0;
 
@@ -36,7 +42,9 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: 
     for view in views.iter().filter(|_| common.is_some()) {
         let Some(other) = crossing(views, view.direction) else { continue };
         // The rows as they were if nothing led across them.
-        let is_aisle = |n: &usize| strips[*n].direction == view.direction && !racks::is_within_row(&strips, *n);
+        let is_aisle = |n: &usize| {
+            strips[*n].direction == view.direction && !strips[*n].bays && !racks::is_within_row(&strips, *n)
+        };
         let aisles: Vec<Strip> = (0..strips.len()).filter(is_aisle).map(|n| strips[n].clone()).collect();
         let extents: Vec<[f64; 2]> = aisles.iter().map(|strip| strip.along).collect();
         for row in racks::between(views, &aisles, &extents) {
@@ -46,7 +54,8 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: 
             let aisles = between.map(|n| &aisles[n]);
             // Then the rows might as well be what lies between two ways across the rows.
             let longest = aisles.iter().map(|aisle| aisle.length()).fold(f64::INFINITY, f64::min);
-            let judged = |strip: &Strip| view.pitch.is_some() || strip.length() < longest;
+            let times = if view.pitch.is_some() { LONGER } else { 1.0 };
+            let judged = |strip: &Strip| strip.length() < times * longest;
             for (strip, crossed) in strips.iter().zip(&mut crossed) {
                 if strip.direction == other.direction && judged(strip) {
                     crossed.extend(cross([view, other], &row, (&columns, &ways), strip, aisles));
@@ -70,6 +79,9 @@ struct Crossed {
     open: bool,
     /// It passes the row's end.
     at_end: bool,
+    /// Where nothing stands in the row between the strip's sides: in which share of the row it would be so by chance,
+    /// and of how many places.
+    free: Option<(f64, f64)>,
 }
 
 /// What a strip finds where it crosses a row; nothing where it ends before.
@@ -96,6 +108,7 @@ fn cross(
     let passes = columns.lets_through(sides);
     let at_end = sides[0] <= row.along[0] + view.cell || sides[1] >= row.along[1] - view.cell;
     let way = if at_end { columns.may_end_at(sides) } else { ways.iter().any(|way| way[0] < u && u < way[1]) };
+    let free = columns.is_free(sides).then(|| columns.free_elsewhere(sides));
     let along_of = |places: [f64; 2]| sorted(places.map(along));
     Some(Crossed {
         along: along_of(between.map(Strip::middle)),
@@ -103,11 +116,19 @@ fn cross(
         way,
         open: way || passes,
         at_end,
+        free,
     })
 }
 
 /// A strip's pieces between the rows that it has no way through.
 fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
+    let expected = by_chance(&crossed);
+    if strip.bays && expected >= EXPECTED.1 {
+        return Vec::new();
+    }
+    for row in crossed.iter_mut().filter(|row| expected < EXPECTED.0 && row.free.is_some()) {
+        (row.way, row.open) = (true, true);
+    }
     if crossed.iter().any(|c| c.at_end && c.way) {
         crossed.retain(|c| !c.at_end);
     }
@@ -124,6 +145,18 @@ fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
     let from = if first == 0 { strip.along[0] } else { crossed[first].along[0] };
     let to = if last + 1 == crossed.len() { strip.along[1] } else { crossed[last].along[1] };
     vec![piece([from, to])]
+}
+
+/// How many places would be expected at which as many rows are free by chance (as of alignments, Desolneux, Moisan and
+/// Morel 2000).
+fn by_chance(crossed: &[Crossed]) -> f64 {
+    let free = || crossed.iter().filter_map(|row| row.free.map(|free| (row.at_end, free)));
+    if free().count() < 2 {
+        return f64::INFINITY;
+    }
+    let chance: f64 = free().map(|(_, (share, _))| share).product();
+    // A row has many places, but two ends.
+    chance * free().map(|(at_end, (_, places))| if at_end { 2.0 } else { places }).fold(0.0, f64::max)
 }
 
 /// The direction that is most nearly square to another.
@@ -144,6 +177,7 @@ fn strip(view: &Turned, other: &Turned, row: &Row, [from, to]: [f64; 2], middles
         along: [ends[0].min(ends[1]), ends[0].max(ends[1])],
         across: [t - width / 2.0, t + width / 2.0],
         score: row.across[1] - row.across[0],
+        bays: false,
     }
 }
 

@@ -34,7 +34,8 @@ pub fn join(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
         if is_one(views, &strips, a, b) {
             let across = shared(&strips[a], &strips[b]);
             let (along, score) = ([strips[a].along[0], strips[b].along[1]], strips[a].score + strips[b].score);
-            strips[a] = Strip { direction: strips[a].direction, along, across, score };
+            let bays = strips[a].bays && strips[b].bays;
+            strips[a] = Strip { direction: strips[a].direction, along, across, score, bays };
             wholes.join(a as u32, b as u32);
         }
     }

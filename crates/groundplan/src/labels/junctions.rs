@@ -88,6 +88,7 @@ pub fn find(views: &[Turned], strips: &[Strip]) -> Vec<Meeting> {
             found.push(meeting);
         }
     }
+    lead_on(views, strips, &mut found);
     found.retain_mut(|meeting| match kind(&meeting.ways) {
         Some(kind) => {
             meeting.kind = kind;
@@ -96,6 +97,22 @@ pub fn find(views: &[Turned], strips: &[Strip]) -> Vec<Meeting> {
         None => false,
     });
     found
+}
+
+/// A corridor that leads from one junction to another is a way out of both, be what goes on there as wide as it is long.
+fn lead_on(views: &[Turned], strips: &[Strip], found: &mut [Meeting]) {
+    for (n, met) in of_each(found, strips.len()).into_iter().enumerate() {
+        let view = &views[strips[n].direction];
+        let mut along: Vec<(f64, usize)> = met.into_iter().map(|m| (view.place(found[m].at)[0], m)).collect();
+        along.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for pair in along.windows(2) {
+            let [(from, before), (to, after)] = [pair[0], pair[1]];
+            if to - from > SAME {
+                found[before].lead(view.angle);
+                found[after].lead(view.angle + std::f64::consts::PI);
+            }
+        }
+    }
 }
 
 /// For each of so many corridors the junctions that it leads to, in their order.
@@ -131,11 +148,16 @@ impl Meeting {
         })
     }
 
+    /// There is a way out, if it is not known.
+    fn lead(&mut self, way: f64) {
+        if self.ways.iter().all(|own| turned(own - way).abs() > SAME_WAY_DEG.to_radians()) {
+            self.ways.push(way);
+        }
+    }
+
     fn join(&mut self, other: Self) {
         for way in other.ways {
-            if self.ways.iter().all(|own| turned(own - way).abs() > SAME_WAY_DEG.to_radians()) {
-                self.ways.push(way);
-            }
+            self.lead(way);
         }
         for corridor in other.corridors {
             if !self.corridors.contains(&corridor) {

@@ -251,6 +251,7 @@ impl<'a> Candidate<'a> {
                     along: [view.along(stretch.start + from), view.along(stretch.start + to)],
                     across: self.across,
                     score: columns.scores[from..to].iter().sum::<i64>() as f64 / FULL as f64 * view.cell * width,
+                    bays: false,
                 },
             ));
         }

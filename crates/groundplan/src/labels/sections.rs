@@ -97,14 +97,9 @@ impl<'a> Columns<'a> {
             .collect()
     }
 
-    /// True when what is known to be a way elsewhere goes on through the row: it is wider than a bay, and nothing
-    /// stands between its sides that one could not walk round.
+    /// True when what is known to be a way elsewhere goes on through the row: it is wider than a bay, and free.
     pub fn lets_through(&self, sides: [f64; 2]) -> bool {
-        let (first, last) = self.inner(sides);
-        first < last
-            && self.pitch.is_some_and(|pitch| sides[1] - sides[0] > BAY * pitch)
-            && self.share(first, last) <= CLUTTER
-            && !(first..last).any(|n| self.stops(n))
+        self.pitch.is_some_and(|pitch| sides[1] - sides[0] > BAY * pitch) && self.is_free(sides)
     }
 
     /// True when the row may end at a way that passes by: that is hardly narrower than a bay, and no upright stands in
@@ -112,6 +107,32 @@ impl<'a> Columns<'a> {
     pub fn may_end_at(&self, sides: [f64; 2]) -> bool {
         let (first, last) = self.inner(sides);
         self.pitch.is_none_or(|pitch| sides[1] - sides[0] > NARROW * pitch) && !(first..last).any(|n| self.stops(n))
+    }
+
+    /// True when nothing stands in the row between two sides that one could not walk round.
+    pub fn is_free(&self, sides: [f64; 2]) -> bool {
+        let (first, last) = self.inner(sides);
+        first < last && self.share(first, last) <= CLUTTER && !(first..last).any(|n| self.stops(n))
+    }
+
+    /// The share of the row, but for what lies between two sides, where as much beside one another would be free, and
+    /// how many such places side by side there are; the share as if one more were free and one were not.
+    pub fn free_elsewhere(&self, sides: [f64; 2]) -> (f64, f64) {
+        let (first, last) = self.inner(sides);
+        let (count, length) = (self.blocked.len(), last - first);
+        let (mut stops, mut taken) = (vec![0u32], vec![0.0]);
+        for n in 0..count {
+            stops.push(stops[n] + u32::from(self.stops(n)));
+            taken.push(taken[n] + self.blocked[n]);
+        }
+        let is_free = |n: &usize| {
+            let end = n + length;
+            stops[end] == stops[*n] && taken[end] - taken[*n] <= CLUTTER * length as f64
+        };
+        let others = || (0..=count.saturating_sub(length)).filter(|n| n + length <= first || last <= *n);
+        let places = |count: usize| count as f64 / length.max(1) as f64;
+        let (all, free) = (places(others().count()), places(others().filter(is_free).count()));
+        ((free + 1.0) / (all + 2.0), all)
     }
 
     /// True when something stands along a straight line across the row near a place.
