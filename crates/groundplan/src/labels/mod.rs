@@ -2,6 +2,7 @@
 
 mod barriers;
 mod bays;
+mod blocks;
 mod confidence;
 mod corridors;
 mod gates;

@@ -3,6 +3,7 @@
 //! A row is known by its two faces, be it half empty: it lies between neighbouring corridors of one direction, is cut
 //! where other corridors cross, and holds something.
 
+use super::blocks;
 use super::corridors::Strip;
 use super::near::Near;
 use super::turned::Turned;
@@ -20,6 +21,16 @@ pub struct Row {
     pub between: Option<[usize; 2]>,
 }
 
+impl Row {
+    pub fn length(&self) -> f64 {
+        self.along[1] - self.along[0]
+    }
+
+    pub fn depth(&self) -> f64 {
+        self.across[1] - self.across[0]
+    }
+}
+
 /// Two faces are this far apart, metres: less is a wall, more is a room.
 pub const DEPTH: (f64, f64) = (0.5, 3.6);
 /// A row's piece is at least so long, metres.
@@ -33,6 +44,10 @@ const SEEN_OUTSIDE: f64 = 0.5;
 const LONGER: f64 = 1.5;
 /// A place has racks when it has so many, and so many metres of them for a metre of corridor.
 const PLACE: (usize, f64) = (3, 0.22);
+/// So many times its length a row counts whose two faces are seen.
+const SEEN_BOTH: f64 = 1.3;
+/// What stands so near to a row's faces is of it, metres.
+const RIM: f64 = 0.1;
 /// Sides nearer than this are the same, metres.
 pub const SAME: f64 = 0.3;
 
@@ -70,7 +85,27 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row
             }
         }
     }
-    apart(views, rows)
+    apart(views, rows, Row::length)
+}
+
+/// The racks of a place: its rows as far as something stands in them, and blocks that no corridor runs along.
+pub fn with_blocks(views: &[Turned], rows: &[Row]) -> Vec<Row> {
+    let mut rows: Vec<Row> = rows.iter().filter_map(|row| trimmed(&views[row.direction], row)).collect();
+    let blocks = blocks::find(views, &rows);
+    // Of a block both faces are seen.
+    let weight = |row: &Row| if blocks.contains(row) { SEEN_BOTH * row.length() } else { row.length() };
+    rows.extend(blocks.iter().cloned());
+    apart(views, rows, weight)
+}
+
+/// A row from the first to the last thing that stands in it; nothing where that is too short.
+fn trimmed(view: &Turned, row: &Row) -> Option<Row> {
+    let first = view.column(row.along[0]);
+    let occupied = view.some_occupied(first..view.column(row.along[1]) + 1, row.across[0] - RIM, row.across[1] + RIM);
+    let from = first + occupied.iter().position(|share| *share > 0.0)?;
+    let to = first + occupied.iter().rposition(|share| *share > 0.0)? + 1;
+    let along = [row.along[0].max(view.along(from)), row.along[1].min(view.along(to))];
+    (along[1] - along[0] >= SHORTEST).then(|| Row { along, ..row.clone() })
 }
 
 /// What lies between neighbouring corridors, and may be a row, be it taken or not.
@@ -178,10 +213,9 @@ pub fn are_here(rows: &[Row], corridors: &[[f64; 2]]) -> bool {
     rows.len() >= PLACE.0 && racks >= PLACE.1 * corridors.iter().map(length).sum::<f64>()
 }
 
-/// The longest of rows that overlap.
-fn apart(views: &[Turned], mut rows: Vec<Row>) -> Vec<Row> {
-    let length = |row: &Row| row.along[1] - row.along[0];
-    rows.sort_by(|a, b| length(b).total_cmp(&length(a)));
+/// Of rows that overlap the one of most weight.
+fn apart(views: &[Turned], mut rows: Vec<Row>, weight: impl Fn(&Row) -> f64) -> Vec<Row> {
+    rows.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
     let middle = |row: &Row| {
         let [u, v] = [row.along, row.across].map(|ends| f64::midpoint(ends[0], ends[1]));
         views[row.direction].to_map([u, v])

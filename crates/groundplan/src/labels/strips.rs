@@ -24,6 +24,7 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
     let Sketch { views, plan, free } = sketch;
     let Plan { strips, meetings, ends, extents, rows } = plan;
     let rows = if racks::are_here(&rows, &extents) { rows } else { Vec::new() };
+    let rows = racks::with_blocks(&views, &rows);
 
     // A face is of one junction at most, and of one corridor.
     let mut faces = Faces::new(division, |state| state == State::Free);

@@ -1,0 +1,201 @@
+//! Blocks: racks that are known by themselves, be there no aisle beside them: taken between two lines that are seen,
+//! with floor before both, oblong, and of a depth that others on the map have too.
+
+use super::racks::{DEPTH, Row};
+use super::turned::Turned;
+
+/// Floor shows before a block's faces from so far to so far off, metres.
+const FRONT: [f64; 2] = [0.15, 0.65];
+/// A column before a face is floor when no more of it than this is not free.
+const FLOOR: f64 = 0.3;
+/// Least share of a block's length before both of whose faces floor shows.
+const STANDS: f64 = 0.85;
+/// A face goes on over gaps as long as this, metres: between posts and goods.
+const GAP: f64 = 1.0;
+/// What stands before a block is no longer than this, metres.
+const BEFORE: f64 = 2.0;
+/// Least share of a block's length on which something touches each of its faces.
+const SEEN: f64 = 0.7;
+/// A block is at least so many metres long, and so many times as long as deep: less is a crate.
+const OBLONG: (f64, f64) = (2.5, 2.2);
+/// Least share of a block, without its faces, that is taken, if one could go through it.
+const TAKEN: f64 = 0.12;
+/// Nothing less deep than this is a block, metres.
+const THINNEST: f64 = 0.4;
+/// Where a lane as wide as this is free along it, metres, there are two blocks.
+const LANE: f64 = 0.8;
+const LANE_TAKEN: f64 = 0.05;
+/// Beyond its ends a block meets floor, or a wall on one side: from so far to so far off, metres, with less than the one
+/// share taken, or more than the other.
+const END: [f64; 2] = [0.2, 0.7];
+const ENDS: [f64; 2] = [0.3, 0.85];
+/// What is taken over more than this share is solid for all that is seen, and a wall where it is less deep than the one,
+/// or than the other where it joins on to something, metres.
+const SHELL: f64 = 0.7;
+const WALL: [f64; 2] = [0.5, 0.8];
+/// Blocks are of a kind when their depths differ by no more than so much, metres, or than that share; and what is taken of them.
+const ALIKE: (f64, f64) = (0.15, 0.1);
+const TAKEN_ALIKE: f64 = 0.4;
+/// So many of a kind are racks, of which two have no more than so much floor between them, metres.
+const KIND: usize = 3;
+const AISLE: f64 = 10.0;
+
+/// What may be one.
+#[derive(Clone)]
+struct Block {
+    row: Row,
+    /// Share of it, without its faces, that is taken.
+    taken: f64,
+}
+
+/// The blocks of a kind that stand in rows. Rows of racks that are known already count for their kind.
+pub fn find(views: &[Turned], known: &[Row]) -> Vec<Row> {
+    let mut found: Vec<Block> = views.iter().flat_map(candidates).collect();
+    found.sort_by(|a, b| b.row.length().total_cmp(&a.row.length()));
+    let mut blocks: Vec<Block> = Vec::new();
+    for block in found {
+        if !blocks.iter().any(|kept| overlap(views, &kept.row, &block.row)) {
+            blocks.push(block);
+        }
+    }
+    let count = blocks.len();
+    for row in known {
+        if !blocks[..count].iter().any(|block| overlap(views, &block.row, row)) {
+            blocks.push(Block { row: row.clone(), taken: inner(&views[row.direction], row) });
+        }
+    }
+    let is_one = |block: &&Block| is_racks(&kind(&blocks, block));
+    blocks[..count].iter().filter(is_one).map(|block| block.row.clone()).collect()
+}
+
+/// Those of its kind, itself among them.
+fn kind<'a>(blocks: &'a [Block], of: &Block) -> Vec<&'a Block> {
+    let alike = |block: &&Block| {
+        let apart = (block.row.depth() - of.row.depth()).abs();
+        apart <= ALIKE.0.max(ALIKE.1 * of.row.depth()) && (block.taken - of.taken).abs() <= TAKEN_ALIKE
+    };
+    blocks.iter().filter(alike).collect()
+}
+
+/// True when there are enough of a kind, and two of them stand side by side or one behind the other.
+fn is_racks(kind: &[&Block]) -> bool {
+    let gap = |a: [f64; 2], b: [f64; 2]| a[0].max(b[0]) - a[1].min(b[1]);
+    let beside = |a: &Row, b: &Row| {
+        let shorter = a.length().min(b.length());
+        a.direction == b.direction
+            && (-gap(a.along, b.along) >= shorter / 2.0 && gap(a.across, b.across) <= AISLE
+                || gap(a.across, b.across) < 0.0 && gap(a.along, b.along) <= AISLE)
+    };
+    let is_beside = |n: usize| kind[..n].iter().any(|other| beside(&other.row, &kind[n].row));
+    kind.len() >= KIND && (0..kind.len()).any(is_beside)
+}
+
+/// True when two rows share ground.
+pub fn overlap(views: &[Turned], one: &Row, two: &Row) -> bool {
+    let holds = |row: &Row, other: &Row| {
+        let at = [other.along, other.across].map(|ends| f64::midpoint(ends[0], ends[1]));
+        let [u, v] = views[row.direction].place(views[other.direction].to_map(at));
+        (row.along[0]..=row.along[1]).contains(&u) && (row.across[0]..=row.across[1]).contains(&v)
+    };
+    holds(one, two) || holds(two, one)
+}
+
+/// Pairs of lines between which something stands, with floor on both sides.
+fn candidates(view: &Turned) -> Vec<Block> {
+    let columns = |metres: f64| (metres / view.cell).round() as usize;
+    let least = columns(OBLONG.0);
+    let close = |touched: &Vec<bool>| {
+        let mut runs = closed(touched, columns(GAP));
+        runs.retain(|[from, to]| to - from >= least);
+        runs
+    };
+    let runs: Vec<_> = view.touched.iter().map(close).collect();
+    let mut found = Vec::new();
+    for (n, &low) in view.offsets.iter().enumerate() {
+        for (m, &high) in view.offsets.iter().enumerate().skip(n + 1) {
+            if high - low > DEPTH.1 {
+                break;
+            }
+            for &[a, b] in &runs[n] {
+                for &[c, d] in runs[m].iter().filter(|[c, d]| a.max(*c) + least <= b.min(*d)) {
+                    if high - low >= THINNEST {
+                        found.extend(standing(view, [n, m], a.max(c), b.min(d)));
+                    }
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Of a range of columns between two lines, the pieces that stand free.
+fn standing(view: &Turned, lines: [usize; 2], from: usize, to: usize) -> Vec<Block> {
+    let columns = |metres: f64| (metres / view.cell).round() as usize;
+    let across = lines.map(|line| view.offsets[line]);
+    let depth = across[1] - across[0];
+    let below = view.some_blocked(from..to, across[0] - FRONT[1], across[0] - FRONT[0]);
+    let above = view.some_blocked(from..to, across[1] + FRONT[0], across[1] + FRONT[1]);
+    let free: Vec<bool> = below.iter().zip(&above).map(|(a, b)| *a < FLOOR && *b < FLOOR).collect();
+    let share = |flags: &[bool]| flags.iter().filter(|flag| **flag).count() as f64 / flags.len() as f64;
+    let mut found = Vec::new();
+    for [s, e] in closed(&free, columns(BEFORE)) {
+        let piece = from + s..from + e;
+        let length = piece.len() as f64 * view.cell;
+        if length < OBLONG.0.max(OBLONG.1 * depth)
+            || share(&free[s..e]) < STANDS
+            || lines.iter().any(|&line| share(&view.touched[line][piece.clone()]) < SEEN)
+        {
+            continue;
+        }
+        let reach = END.map(columns);
+        let width = view.size[0];
+        let before = piece.start.saturating_sub(reach[1])..piece.start.saturating_sub(reach[0]);
+        let after = (piece.end + reach[0]).min(width)..(piece.end + reach[1]).min(width);
+        let mut ends = [before, after].map(|beyond| mean(&view.some_blocked(beyond, across[0], across[1])));
+        ends.sort_by(f64::total_cmp);
+        let is_open = ends[0] < ENDS[0] && (ends[1] < ENDS[0] || ends[1] > ENDS[1]);
+        let along = [view.along(piece.start), view.along(piece.end)];
+        let row = Row { direction: view.direction, along, across, between: None };
+        let taken = inner(view, &row);
+        // What is thin and shows nothing of its inside is a wall, where it does not stand by itself.
+        let is_wall = taken > SHELL && (depth < WALL[0] || depth < WALL[1] && ends[1] > ENDS[0]);
+        if (taken >= TAKEN || depth < LANE) && !is_wall && is_open && !has_lane(view, piece, across) {
+            found.push(Block { row, taken });
+        }
+    }
+    found
+}
+
+/// Share of a row, without its faces, that is taken.
+fn inner(view: &Turned, row: &Row) -> f64 {
+    let columns = view.column(row.along[0])..view.column(row.along[1]).max(view.column(row.along[0]) + 1);
+    mean(&view.some_blocked(columns, row.across[0] + FRONT[0], row.across[1] - FRONT[0]))
+}
+
+/// True where one can go through all along.
+fn has_lane(view: &Turned, piece: std::ops::Range<usize>, across: [f64; 2]) -> bool {
+    let steps = ((across[1] - across[0] - LANE) / view.cell).floor().max(-1.0);
+    (0..(steps + 1.0) as usize).any(|n| {
+        let low = across[0] + n as f64 * view.cell;
+        let blocked = view.some_blocked(piece.clone(), low, low + LANE);
+        let taken = blocked.iter().filter(|share| **share > 0.0).count();
+        (taken as f64) < LANE_TAKEN * blocked.len() as f64
+    })
+}
+
+fn mean(shares: &[f64]) -> f64 {
+    // Beyond the map nothing is known to be free.
+    if shares.is_empty() { 1.0 } else { shares.iter().sum::<f64>() / shares.len() as f64 }
+}
+
+/// Runs of what is true, closed over gaps: from, to.
+fn closed(flags: &[bool], gap: usize) -> Vec<[usize; 2]> {
+    let mut runs: Vec<[usize; 2]> = Vec::new();
+    for (n, _) in flags.iter().enumerate().filter(|(_, flag)| **flag) {
+        match runs.last_mut() {
+            Some(last) if n <= last[1] + gap => last[1] = n + 1,
+            _ => runs.push([n, n + 1]),
+        }
+    }
+    runs
+}

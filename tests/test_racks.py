@@ -1,0 +1,79 @@
+"""Racks as a person sees them: oblong, of a depth that repeats, with floor before them; and what is none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import groundplan
+
+Picture = npt.NDArray[np.uint8]
+
+
+def hall(width: float = 30.0, depth: float = 40.0) -> Picture:
+    """A hall with nothing in it, 20 pixels a metre, a metre of unknown round it."""
+    picture = np.full((int(20 * depth) + 40, int(20 * width) + 40), 205, np.uint8)
+    picture[18:-18, 18:-18] = 0
+    picture[20:-20, 20:-20] = 254
+    return picture
+
+
+def put(picture: Picture, x: float, y: float, width: float, depth: float, inside: int = 205) -> None:
+    """An outline with its lower corner at (x, y) metres of the floor, and what is seen inside."""
+    box = np.s_[int(20 * y) + 20 : int(20 * (y + depth)) + 20, int(20 * x) + 20 : int(20 * (x + width)) + 20]
+    picture[box] = 0
+    picture[box][2:-2, 2:-2] = inside
+
+
+def racks(picture: Picture) -> list[dict[str, object]]:
+    return groundplan.survey(picture, resolution=0.05).of_kind("rack")
+
+
+@pytest.mark.parametrize("inside", [0, 205])
+def test_racks_far_apart_in_a_hall_are_racks_without_an_aisle_between(inside: int) -> None:
+    picture = hall()
+    for x in (4.0, 14.0, 24.0):
+        put(picture, x, 10.0, 1.1, 16.0, inside)
+    survey = groundplan.survey(picture, resolution=0.05)
+    found = survey.of_kind("rack")
+    assert len(found) == 3
+    for label in found:
+        assert label["width"] == pytest.approx(1.1, abs=0.15) and label["confidence"] >= 0.5
+        (_, y0), (_, y1) = label["axis"]
+        assert abs(y1 - y0) == pytest.approx(16.0, abs=0.3)
+        assert label["faces"]
+
+
+def test_shelves_that_are_seen_through_are_racks() -> None:
+    picture = hall()
+    for x in (4.0, 16.0):
+        for y in (6.0, 9.0, 12.0, 15.0):
+            put(picture, x, y, 4.0, 0.55, 254)
+    assert len(racks(picture)) == 8
+
+
+def test_crates_pillars_and_single_blocks_are_no_racks() -> None:
+    picture = hall()
+    for x in (4.0, 8.0, 12.0, 16.0):
+        put(picture, x, 8.0, 1.2, 0.8)
+        put(picture, x, 20.0, 0.4, 0.4)
+    put(picture, 10.0, 30.0, 8.0, 1.5)
+    assert racks(picture) == []
+
+
+def test_walls_that_end_in_a_room_are_no_racks() -> None:
+    picture = hall()
+    for y in (8.0, 16.0, 24.0, 32.0):
+        put(picture, 0.0, y, 12.0, 0.5)
+    assert racks(picture) == []
+
+
+@pytest.mark.parametrize("name", ["isaac_iw_hub_warehouse", "svl_warehouse"])
+def test_the_racks_of_maps_of_others_are_of_one_depth(name: str, shared: Path) -> None:
+    found = groundplan.survey(groundplan.read(shared / "maps" / f"{name}.yaml")).of_kind("rack")
+    assert len(found) == {"isaac_iw_hub_warehouse": 3, "svl_warehouse": 10}[name]
+    depths = [label["width"] for label in found]
+    assert max(depths) - min(depths) < 0.2
