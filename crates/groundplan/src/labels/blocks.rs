@@ -70,24 +70,38 @@ pub fn find(views: &[Turned], known: &[Row]) -> Vec<Row> {
 
 /// Those of its kind, itself among them.
 fn kind<'a>(blocks: &'a [Block], of: &Block) -> Vec<&'a Block> {
-    let alike = |block: &&Block| {
-        let apart = (block.row.depth() - of.row.depth()).abs();
-        apart <= ALIKE.0.max(ALIKE.1 * of.row.depth()) && (block.taken - of.taken).abs() <= TAKEN_ALIKE
-    };
+    let alike = |block: &&Block| are_alike(&of.row, &block.row) && (block.taken - of.taken).abs() <= TAKEN_ALIKE;
     blocks.iter().filter(alike).collect()
 }
 
 /// True when there are enough of a kind, and two of them stand side by side or one behind the other.
 fn is_racks(kind: &[&Block]) -> bool {
-    let gap = |a: [f64; 2], b: [f64; 2]| a[0].max(b[0]) - a[1].min(b[1]);
-    let beside = |a: &Row, b: &Row| {
-        let shorter = a.length().min(b.length());
-        a.direction == b.direction
-            && (-gap(a.along, b.along) >= shorter / 2.0 && gap(a.across, b.across) <= AISLE
-                || gap(a.across, b.across) < 0.0 && gap(a.along, b.along) <= AISLE)
+    let is_near = |n: usize| {
+        let near = |other: &&Block| beside(&other.row, &kind[n].row) || behind(&other.row, &kind[n].row);
+        kind[..n].iter().any(near)
     };
-    let is_beside = |n: usize| kind[..n].iter().any(|other| beside(&other.row, &kind[n].row));
-    kind.len() >= KIND && (0..kind.len()).any(is_beside)
+    kind.len() >= KIND && (0..kind.len()).any(is_near)
+}
+
+/// True when no more than an aisle lies between the long sides of two rows.
+pub fn beside(one: &Row, two: &Row) -> bool {
+    let shorter = one.length().min(two.length());
+    let gap = gap(one.across, two.across);
+    one.direction == two.direction && -self::gap(one.along, two.along) >= shorter / 2.0 && (0.0..=AISLE).contains(&gap)
+}
+
+/// True when no more than an aisle lies between the ends of two rows.
+fn behind(one: &Row, two: &Row) -> bool {
+    one.direction == two.direction && gap(one.across, two.across) < 0.0 && gap(one.along, two.along) <= AISLE
+}
+
+fn gap(one: [f64; 2], two: [f64; 2]) -> f64 {
+    one[0].max(two[0]) - one[1].min(two[1])
+}
+
+/// True when two rows are about as deep.
+pub fn are_alike(one: &Row, two: &Row) -> bool {
+    (one.depth() - two.depth()).abs() <= ALIKE.0.max(ALIKE.1 * one.depth())
 }
 
 /// True when two rows share ground.

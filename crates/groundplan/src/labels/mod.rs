@@ -1,5 +1,6 @@
 //! II-E: what the parts of the map are.
 
+mod at_walls;
 mod barriers;
 mod bays;
 mod blocks;
@@ -26,6 +27,7 @@ mod sketch;
 mod strips;
 mod sums;
 mod turned;
+mod whole;
 
 pub use confidence::find_confidence;
 pub use patterns::{Pattern, PatternKind, find_patterns};

@@ -3,7 +3,6 @@
 //! A row is known by its two faces, be it half empty: it lies between neighbouring corridors of one direction, is cut
 //! where other corridors cross, and holds something.
 
-use super::blocks;
 use super::corridors::Strip;
 use super::near::Near;
 use super::turned::Turned;
@@ -34,7 +33,7 @@ impl Row {
 /// Two faces are this far apart, metres: less is a wall, more is a room.
 pub const DEPTH: (f64, f64) = (0.5, 3.6);
 /// A row's piece is at least so long, metres.
-const SHORTEST: f64 = 1.2;
+pub const SHORTEST: f64 = 1.2;
 /// Least share of a row that is taken.
 const TAKEN: f64 = 0.12;
 /// The same where no corridor runs along its other side.
@@ -44,10 +43,6 @@ const SEEN_OUTSIDE: f64 = 0.5;
 const LONGER: f64 = 1.5;
 /// A place has racks when it has so many, and so many metres of them for a metre of corridor.
 const PLACE: (usize, f64) = (3, 0.22);
-/// So many times its length a row counts whose two faces are seen.
-const SEEN_BOTH: f64 = 1.3;
-/// What stands so near to a row's faces is of it, metres.
-const RIM: f64 = 0.1;
 /// Sides nearer than this are the same, metres.
 pub const SAME: f64 = 0.3;
 
@@ -76,7 +71,7 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row
                 let across = if side == 1 { [own, own + depth] } else { [own - depth, own] };
                 let row = |along| Row { direction: strip.direction, along, across, between: None };
                 let is_row = |row: &Row| taken(view, row) >= TAKEN_OUTSIDE && seen(view, line, row) >= SEEN_OUTSIDE;
-                let pieces = crossings.uncrossed(n, across, open.clone());
+                let pieces = crossings.uncrossed(strip.direction, across, open.clone());
                 let found: Vec<Row> = pieces.into_iter().map(row).filter(is_row).collect();
                 for row in &found {
                     open = without(open, row.along[0], row.along[1]);
@@ -88,26 +83,6 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row
     apart(views, rows, Row::length)
 }
 
-/// The racks of a place: its rows as far as something stands in them, and blocks that no corridor runs along.
-pub fn with_blocks(views: &[Turned], rows: &[Row]) -> Vec<Row> {
-    let mut rows: Vec<Row> = rows.iter().filter_map(|row| trimmed(&views[row.direction], row)).collect();
-    let blocks = blocks::find(views, &rows);
-    // Of a block both faces are seen.
-    let weight = |row: &Row| if blocks.contains(row) { SEEN_BOTH * row.length() } else { row.length() };
-    rows.extend(blocks.iter().cloned());
-    apart(views, rows, weight)
-}
-
-/// A row from the first to the last thing that stands in it; nothing where that is too short.
-fn trimmed(view: &Turned, row: &Row) -> Option<Row> {
-    let first = view.column(row.along[0]);
-    let occupied = view.some_occupied(first..view.column(row.along[1]) + 1, row.across[0] - RIM, row.across[1] + RIM);
-    let from = first + occupied.iter().position(|share| *share > 0.0)?;
-    let to = first + occupied.iter().rposition(|share| *share > 0.0)? + 1;
-    let along = [row.along[0].max(view.along(from)), row.along[1].min(view.along(to))];
-    (along[1] - along[0] >= SHORTEST).then(|| Row { along, ..row.clone() })
-}
-
 /// What lies between neighbouring corridors, and may be a row, be it taken or not.
 pub fn between(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
     Crossings::new(views, strips, extents).between()
@@ -115,7 +90,7 @@ pub fn between(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<
 
 /// The corridors of its direction on one side of a corridor, no further off than a row is deep, the nearest first; each
 /// with how far.
-fn behind(strips: &[Strip], n: usize, side: usize) -> Vec<(usize, f64)> {
+pub fn behind(strips: &[Strip], n: usize, side: usize) -> Vec<(usize, f64)> {
     let own = &strips[n];
     let gap = |m: usize| {
         let other = &strips[m];
@@ -129,7 +104,7 @@ fn behind(strips: &[Strip], n: usize, side: usize) -> Vec<(usize, f64)> {
 }
 
 /// What crosses rows: corridors of other directions.
-struct Crossings<'a> {
+pub struct Crossings<'a> {
     views: &'a [Turned],
     strips: &'a [Strip],
     extents: &'a [[f64; 2]],
@@ -139,7 +114,7 @@ struct Crossings<'a> {
 }
 
 impl<'a> Crossings<'a> {
-    fn new(views: &'a [Turned], strips: &'a [Strip], extents: &'a [[f64; 2]]) -> Self {
+    pub fn new(views: &'a [Turned], strips: &'a [Strip], extents: &'a [[f64; 2]]) -> Self {
         let polygons: Vec<_> =
             strips.iter().zip(extents).map(|(s, extent)| views[s.direction].rectangle(*extent, s.across)).collect();
         let sines = views.iter().flat_map(|one| views.iter().map(|other| libm::sin(one.angle - other.angle).abs()));
@@ -160,7 +135,7 @@ impl<'a> Crossings<'a> {
                 open = without(open, from, to);
                 if depth >= DEPTH.0 {
                     let across = [strip.across[1], strips[m].across[0]];
-                    let pieces = self.uncrossed(n, across, shared).into_iter();
+                    let pieces = self.uncrossed(strip.direction, across, shared).into_iter();
                     rows.extend(pieces.map(|along| Row {
                         direction: strip.direction,
                         along,
@@ -174,8 +149,7 @@ impl<'a> Crossings<'a> {
     }
 
     /// Pieces of a row beside a corridor that no other corridor crosses, each long enough.
-    fn uncrossed(&self, n: usize, across: [f64; 2], mut pieces: Vec<(f64, f64)>) -> Vec<[f64; 2]> {
-        let direction = self.strips[n].direction;
+    pub fn uncrossed(&self, direction: usize, across: [f64; 2], mut pieces: Vec<(f64, f64)>) -> Vec<[f64; 2]> {
         let view = &self.views[direction];
         let middle = f64::midpoint(across[0], across[1]);
         let ends = [pieces.first().map_or(0.0, |piece| piece.0), pieces.last().map_or(0.0, |piece| piece.1)];
@@ -214,7 +188,7 @@ pub fn are_here(rows: &[Row], corridors: &[[f64; 2]]) -> bool {
 }
 
 /// Of rows that overlap the one of most weight.
-fn apart(views: &[Turned], mut rows: Vec<Row>, weight: impl Fn(&Row) -> f64) -> Vec<Row> {
+pub fn apart(views: &[Turned], mut rows: Vec<Row>, weight: impl Fn(&Row) -> f64) -> Vec<Row> {
     rows.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
     let middle = |row: &Row| {
         let [u, v] = [row.along, row.across].map(|ends| f64::midpoint(ends[0], ends[1]));
@@ -248,7 +222,7 @@ fn seen(view: &Turned, line: usize, row: &Row) -> f64 {
 }
 
 /// Pieces without what lies between two places.
-fn without(pieces: Vec<(f64, f64)>, from: f64, to: f64) -> Vec<(f64, f64)> {
+pub fn without(pieces: Vec<(f64, f64)>, from: f64, to: f64) -> Vec<(f64, f64)> {
     let cut = pieces.into_iter().flat_map(|(a, b)| [(a, b.min(from)), (a.max(to), b)]);
     cut.filter(|(a, b)| a < b).collect()
 }

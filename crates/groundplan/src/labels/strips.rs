@@ -8,10 +8,11 @@ use super::near::Near;
 use super::period::Period;
 use super::pillars;
 use super::places::Squares;
-use super::racks::{self, Row};
+use super::racks::Row;
 use super::rooms::{self, Racked, Raster};
 use super::sketch::{Plan, Sketch};
 use super::turned::Turned;
+use super::whole;
 use super::{Division, Evidence, JunctionKind, Label, outline};
 use crate::bands::side_by_side;
 use crate::grid::{State, tidy};
@@ -23,8 +24,7 @@ const RIM: f64 = 0.4;
 pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Label> {
     let Sketch { views, plan, free } = sketch;
     let Plan { strips, meetings, ends, extents, rows } = plan;
-    let rows = if racks::are_here(&rows, &extents) { rows } else { Vec::new() };
-    let rows = racks::with_blocks(&views, &rows);
+    let rows = whole::find(&views, &strips, &extents, &rows);
 
     // A face is of one junction at most, and of one corridor.
     let mut faces = Faces::new(division, |state| state == State::Free);
@@ -107,7 +107,7 @@ fn racked(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], meetings: &[
         let strip = &strips[n];
         rectangle(&views[strip.direction], extents[n], strip.across)
     });
-    let grounds = rows.iter().filter(|row| row.between.is_some()).map(|row| {
+    let grounds = rows.iter().map(|row| {
         let wider = |[low, high]: [f64; 2]| [low - RIM, high + RIM];
         rectangle(&views[row.direction], wider(row.along), wider(row.across))
     });

@@ -1,0 +1,89 @@
+//! Racks at walls: goods stand before a wall, and hide it but for gaps between them and what of it is beyond their ends.
+
+use super::corridors::Strip;
+use super::racks::{Crossings, DEPTH, Row, SAME, behind, without};
+use super::turned::Turned;
+use super::whole::{RIM, trimmed};
+
+/// Behind a wall from so far to so far off, metres, more than this share is not free.
+const BEYOND: [f64; 2] = [0.2, 0.7];
+const UNSEEN: f64 = 0.9;
+/// A wall is looked for between goods, where no more than this share of a row's depth is taken, and so far beyond its
+/// ends, metres, and it is there over more than that share.
+const SHOWN: f64 = 0.15;
+const ENDS: f64 = 2.0;
+const WALL_SHOWN: f64 = 0.6;
+/// Least share of a row at a wall that is taken, and the share of its near face that is solid in walls only.
+const TAKEN: f64 = 0.25;
+const SOLID: f64 = 0.95;
+/// Goods are looked for no nearer to it, metres.
+const BEFORE: f64 = 0.3;
+/// Rows between a corridor and a wall that goods hide but for gaps between them, and that is seen beyond their ends.
+pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], known: &[Row]) -> Vec<Row> {
+    let crossings = Crossings::new(views, strips, extents);
+    let mut found = Vec::new();
+    for (n, strip) in strips.iter().enumerate() {
+        let view = &views[strip.direction];
+        for side in [0, 1] {
+            let own = strip.across[side];
+            let mut open = vec![(extents[n][0], extents[n][1])];
+            for (m, _) in behind(strips, n, side) {
+                open = without(open, extents[m][0], extents[m][1]);
+            }
+            for row in known.iter().filter(|row| row.direction == strip.direction) {
+                if (row.across[1 - side] - own).abs() < SAME {
+                    open = without(open, row.along[0], row.along[1]);
+                }
+            }
+            let depth = |line: &usize| if side == 1 { view.offsets[*line] - own } else { own - view.offsets[*line] };
+            let mut lines: Vec<usize> =
+                (0..view.offsets.len()).filter(|n| (DEPTH.0..=DEPTH.1).contains(&depth(n))).collect();
+            lines.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
+            for line in lines {
+                let far = view.offsets[line];
+                let across = [own.min(far), own.max(far)];
+                let row = |along| Row { direction: strip.direction, along, across, between: None };
+                let rows = crossings.uncrossed(strip.direction, across, open.clone()).into_iter().map(row);
+                let rows = rows.filter_map(|row| trimmed(view, &row, before(&row, side)));
+                for row in rows.filter(|row| hides_wall(view, line, side, row)) {
+                    open = without(open, row.along[0], row.along[1]);
+                    found.push(row);
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Where goods stand that hide a wall on one side of a row.
+fn before(row: &Row, side: usize) -> [f64; 2] {
+    let mut across = row.across;
+    across[side] += if side == 1 { -BEFORE } else { BEFORE };
+    across
+}
+
+/// True when goods stand in a row and a wall behind it: it shows between them and beyond the row's ends, and nothing
+/// shows behind it.
+fn hides_wall(view: &Turned, line: usize, side: usize, row: &Row) -> bool {
+    let columns = view.column(row.along[0])..view.column(row.along[1]) + 1;
+    let mean = |shares: Vec<f64>| shares.iter().sum::<f64>() / shares.len().max(1) as f64;
+    let far = row.across[side];
+    let beyond =
+        |metres: [f64; 2]| if side == 1 { metres.map(|m| far + m) } else { [far - metres[1], far - metres[0]] };
+    let [low, high] = beyond(BEYOND);
+    let before = before(row, side);
+    let ends = (ENDS / view.cell) as usize;
+    let wide = columns.start.saturating_sub(ends)..(columns.end + ends).min(view.size[0]);
+    let inside = view.some_blocked(wide.clone(), before[0], before[1]);
+    let shown: Vec<bool> = wide.zip(&inside).filter(|(_, b)| **b < SHOWN).map(|(c, _)| view.touched[line][c]).collect();
+    let near = if side == 1 { row.across[0] } else { row.across[1] };
+    let solid = view.some_occupied(columns.clone(), near - RIM, near + RIM).iter().filter(|share| **share > 0.0).count()
+        as f64
+        / columns.len() as f64;
+    let taken = mean(view.some_blocked(columns.clone(), before[0], before[1]));
+    taken >= TAKEN
+        && solid < SOLID
+        && mean(view.some_blocked(columns, low, high)) > UNSEEN
+        && shown.len() as f64 * view.cell >= 1.0
+        && shown.iter().filter(|is| **is).count() as f64 > WALL_SHOWN * shown.len() as f64
+}

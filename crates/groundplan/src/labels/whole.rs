@@ -1,0 +1,127 @@
+//! Racks as they stand: rows beside corridors end where what stands in them ends and not where a corridor does, those
+//! that are shells of walls go, and blocks that no corridor runs along come.
+
+use super::at_walls;
+use super::blocks::{self, are_alike, beside};
+use super::corridors::Strip;
+use super::racks::{self, Crossings, Row, SHORTEST, apart};
+use super::turned::Turned;
+
+/// So many times its length a row counts whose two faces are seen.
+const SEEN_BOTH: f64 = 1.3;
+/// What stands so near to a row's faces is of it, metres.
+pub const RIM: f64 = 0.1;
+/// A row is followed in steps of this, metres, and goes on where before one of its faces more than that share of a step
+/// is floor, and more than the other share of it is taken; over one step where it does not.
+const STEP: f64 = 1.0;
+const FRONT: [f64; 2] = [0.15, 0.65];
+const FLOOR: f64 = 0.6;
+const TAKEN: f64 = 0.25;
+const OVER: usize = 1;
+
+/// A shell has a face that is closed over that share of its length, within so far, metres; so far behind its faces more
+/// than the other share of it is unknown, or than the last where no floor is seen before its other face. Between goods
+/// something of a rack's inside shows.
+const CLOSED: f64 = 0.95;
+const NEAR: f64 = 0.15;
+const INSET: f64 = 0.3;
+const UNKNOWN: f64 = 0.965;
+const HIDDEN: f64 = 0.4;
+
+/// The racks of a place.
+pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], rows: &[Row]) -> Vec<Row> {
+    let mut known = without_walls(views, rows);
+    if racks::are_here(&known, extents) {
+        let at_walls = at_walls::find(views, strips, extents, &known);
+        known.extend(at_walls);
+    } else {
+        known.clear();
+    }
+    let crossings = Crossings::new(views, strips, extents);
+    let whole = |row: &Row| {
+        let view = &views[row.direction];
+        let row = trimmed(view, row, row.across)?;
+        Some(if row.between.is_some() { followed(view, &crossings, &row) } else { row })
+    };
+    let mut found: Vec<Row> = known.iter().filter_map(whole).collect();
+    let mut blocks = blocks::find(views, &found);
+    for block in &mut blocks {
+        block.between = found.iter().filter(|row| blocks::overlap(views, row, block)).find_map(|row| row.between);
+    }
+    // Of a block both faces are seen.
+    let weight = |row: &Row| if blocks.contains(row) { SEEN_BOTH * row.length() } else { row.length() };
+    found.extend(blocks.iter().cloned());
+    apart(views, found, weight)
+}
+
+/// Rows without those that are walls for all that is seen: closed all along, nothing known between, and none of the kind
+/// across an aisle.
+fn without_walls(views: &[Turned], rows: &[Row]) -> Vec<Row> {
+    let shells: Vec<&Row> = rows.iter().filter(|row| is_shell(&views[row.direction], row)).collect();
+    let has_kin = |row: &Row| shells.iter().any(|other| beside(row, other) && are_alike(row, other));
+    rows.iter().filter(|row| !shells.contains(row) || has_kin(row)).cloned().collect()
+}
+
+fn is_shell(view: &Turned, row: &Row) -> bool {
+    let columns = view.column(row.along[0])..view.column(row.along[1]) + 1;
+    let count = columns.len() as f64;
+    let closed = |face: f64| {
+        let occupied = view.some_occupied(columns.clone(), face - NEAR, face + NEAR);
+        occupied.iter().filter(|share| **share > 0.0).count() as f64 >= CLOSED * count
+    };
+    let blocked = |low, high| view.some_blocked(columns.clone(), low, high).iter().sum::<f64>() / count;
+    let [low, high] = row.across;
+    let inset = INSET.min(row.depth() / 4.0);
+    let occupied = view.some_occupied(columns.clone(), low + inset, high - inset).iter().sum::<f64>() / count;
+    let unknown = blocked(low + inset, high - inset) - occupied;
+    let before = [blocked(low - FRONT[1], low - FRONT[0]), blocked(high + FRONT[0], high + FRONT[1])];
+    let near = if before[0] < before[1] { low } else { high };
+    let one_sided = before[0].max(before[1]) > FLOOR;
+    unknown > UNKNOWN && row.across.into_iter().any(closed) || one_sided && unknown > HIDDEN && closed(near)
+}
+
+/// A row from the first to the last thing that stands between two places across; nothing where that is too short.
+pub fn trimmed(view: &Turned, row: &Row, [low, high]: [f64; 2]) -> Option<Row> {
+    let first = view.column(row.along[0]);
+    let occupied = view.some_occupied(first..view.column(row.along[1]) + 1, low - RIM, high + RIM);
+    let from = first + occupied.iter().position(|share| *share > 0.0)?;
+    let to = first + occupied.iter().rposition(|share| *share > 0.0)? + 1;
+    let along = [row.along[0].max(view.along(from)), row.along[1].min(view.along(to))];
+    (along[1] - along[0] >= SHORTEST).then(|| Row { along, ..row.clone() })
+}
+
+/// A row with what goes on beyond its ends, up to the corridors that cross it: of what a corridor on one side does not
+/// reach, one face is seen.
+fn followed(view: &Turned, crossings: &Crossings, row: &Row) -> Row {
+    let whole = vec![(view.along(0), view.along(view.size[0]))];
+    let middle = f64::midpoint(row.along[0], row.along[1]);
+    let uncrossed = crossings.uncrossed(row.direction, row.across, whole);
+    let Some(limits) = uncrossed.into_iter().find(|[from, to]| (*from..=*to).contains(&middle)) else {
+        return row.clone();
+    };
+    let goes_on = |from: f64| {
+        let columns = view.column(from)..view.column(from + STEP).max(view.column(from) + 1);
+        let count = columns.len() as f64;
+        let mean = |low, high| view.some_blocked(columns.clone(), low, high).iter().sum::<f64>() / count;
+        let [low, high] = row.across;
+        let before = mean(low - FRONT[1], low - FRONT[0]).min(mean(high + FRONT[0], high + FRONT[1]));
+        before < 1.0 - FLOOR && mean(low, high) > TAKEN
+    };
+    let reach = |start: f64, sign: f64, limit: f64| {
+        let (mut reach, mut missed) = (start, 0);
+        for n in 1.. {
+            let to = start + sign * f64::from(n) * STEP;
+            if missed > OVER || sign * (limit - to) < 0.0 {
+                break;
+            }
+            if goes_on(if sign > 0.0 { to - STEP } else { to }) {
+                (reach, missed) = (to, 0);
+            } else {
+                missed += 1;
+            }
+        }
+        reach
+    };
+    let along = [reach(row.along[0], -1.0, limits[0]), reach(row.along[1], 1.0, limits[1])];
+    trimmed(view, &Row { along, ..row.clone() }, row.across).unwrap_or_else(|| row.clone())
+}
