@@ -97,6 +97,29 @@ def test_what_was_not_observed_counts_neither_way() -> None:
     assert score(survey, truth())["junction_typed_f1"] == 1.0
 
 
+def racks_of(true: dict[str, Any], moved: float = 0.0) -> dict[str, Any]:
+    """A survey with the observed racks of a truth and no more, each moved along itself by a share of its length."""
+    labels = []
+    for rack in (rack for rack in true["racks"] if rack["observed"]):
+        a, b = np.array(rack["a"]), np.array(rack["b"])
+        across = np.array([a[1] - b[1], b[0] - a[0]]) / np.linalg.norm(b - a) * rack["width"] / 2
+        ends = [a + moved * (b - a), b + moved * (b - a)]
+        polygon = [ends[0] - across, ends[1] - across, ends[1] + across, ends[0] + across]
+        axis = [end.tolist() for end in ends]
+        labels.append({"kind": "rack", "polygon": [corner.tolist() for corner in polygon], "axis": axis, "pitch": None})
+    return {**survey_of(true), "labels": labels}
+
+
+def test_racks_are_right_where_their_outlines_overlap_by_half_of_their_union() -> None:
+    site = truth()
+    assert 0 < sum(rack["observed"] for rack in site["racks"]) < len(site["racks"])
+    for moved, right in ((0.0, 1.0), (0.3, 1.0), (0.4, 0.0)):
+        scores = score(racks_of(site, moved), site)
+        assert scores["rack_recall"] == scores["rack_precision"] == right
+    scores = score({**survey_of(site), "labels": []}, site)
+    assert scores["rack_recall"] == 0.0 and scores["rack_precision"] is None
+
+
 def test_dead_ends_are_not_held_against_a_survey() -> None:
     survey = survey_of(truth())
     survey["labels"].append({"kind": "junction", "type": "end", "at": [0.0, 0.0]})

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 
 import groundplan
+from groundplan import simulate
+from groundplan.evaluate import score
 
 Picture = npt.NDArray[np.uint8]
 
@@ -77,3 +80,25 @@ def test_the_racks_of_maps_of_others_are_of_one_depth(name: str, shared: Path) -
     assert len(found) == {"isaac_iw_hub_warehouse": 3, "svl_warehouse": 10}[name]
     depths = [label["width"] for label in found]
     assert max(depths) - min(depths) < 0.2
+
+
+SMALL: dict[str, Any] = {"scan_every": 0.6, "beams": 480}
+
+
+def test_racks_at_the_walls_of_a_simulated_hall_are_found_too() -> None:
+    pytest.importorskip("shapely", reason="scores need shapely and scipy")
+    made = simulate.warehouse(seed=7, width=26.0, depth=20.0, **SMALL)
+    scores = score(groundplan.survey(made.map).to_dict(), made.truth)
+    assert scores["rack_recall"] == scores["rack_precision"] == 1.0
+
+
+def test_the_unknown_between_two_halls_is_no_rack() -> None:
+    pytest.importorskip("shapely", reason="scores need shapely and scipy")
+    made = simulate.warehouse(seed=204, width=40.0, depth=28.0, halls=3, gap=3.0, crosswise=True, **SMALL)
+    assert score(groundplan.survey(made.map).to_dict(), made.truth)["rack_precision"] >= 0.95
+
+
+def test_a_row_goes_on_where_one_of_its_aisles_was_not_driven() -> None:
+    pytest.importorskip("shapely", reason="scores need shapely and scipy")
+    made = simulate.warehouse(seed=114, width=60.0, depth=40.0, partial=0.5, lidar_range=12.0, **SMALL)
+    assert score(groundplan.survey(made.map).to_dict(), made.truth)["rack_recall"] >= 0.9

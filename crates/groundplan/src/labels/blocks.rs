@@ -1,7 +1,8 @@
 //! Blocks: racks that are known by themselves, be there no aisle beside them: taken between two lines that are seen,
 //! with floor before both, oblong, and of a depth that others on the map have too.
 
-use super::racks::{DEPTH, Row};
+use super::near::Near;
+use super::racks::{DEPTH, Row, apart};
 use super::turned::Turned;
 
 /// Floor shows before a block's faces from so far to so far off, metres.
@@ -41,7 +42,6 @@ const KIND: usize = 3;
 const AISLE: f64 = 10.0;
 
 /// What may be one.
-#[derive(Clone)]
 struct Block {
     row: Row,
     /// Share of it, without its faces, that is taken.
@@ -50,22 +50,25 @@ struct Block {
 
 /// The blocks of a kind that stand in rows. Rows of racks that are known already count for their kind.
 pub fn find(views: &[Turned], known: &[Row]) -> Vec<Row> {
-    let mut found: Vec<Block> = views.iter().flat_map(candidates).collect();
-    found.sort_by(|a, b| b.row.length().total_cmp(&a.row.length()));
-    let mut blocks: Vec<Block> = Vec::new();
-    for block in found {
-        if !blocks.iter().any(|kept| overlap(views, &kept.row, &block.row)) {
-            blocks.push(block);
-        }
-    }
-    let count = blocks.len();
-    for row in known {
-        if !blocks[..count].iter().any(|block| overlap(views, &block.row, row)) {
-            blocks.push(Block { row: row.clone(), taken: inner(&views[row.direction], row) });
-        }
-    }
+    let found = apart(views, views.iter().flat_map(candidates).collect(), Row::length);
+    let count = found.len();
+    let others = overlapping(views, known, &found);
+    let others = known.iter().zip(&others).filter(|(_, blocks)| blocks.is_empty()).map(|(row, _)| row.clone());
+    let block = |row: Row| Block { taken: inner(&views[row.direction], &row), row };
+    let blocks: Vec<Block> = found.into_iter().chain(others).map(block).collect();
     let is_one = |block: &&Block| is_racks(&kind(&blocks, block));
     blocks[..count].iter().filter(is_one).map(|block| block.row.clone()).collect()
+}
+
+/// For each row those of others that share ground with it.
+pub fn overlapping(views: &[Turned], rows: &[Row], others: &[Row]) -> Vec<Vec<usize>> {
+    let polygon = |row: &Row| views[row.direction].rectangle(row.along, row.across);
+    let near = Near::polygons(&others.iter().map(polygon).collect::<Vec<_>>());
+    let of = |row: &Row| {
+        let beside = near.beside(&polygon(row)).into_iter().map(|n| n as usize);
+        beside.filter(|&n| overlap(views, &others[n], row)).collect()
+    };
+    rows.iter().map(of).collect()
 }
 
 /// Those of its kind, itself among them.
@@ -104,8 +107,8 @@ pub fn are_alike(one: &Row, two: &Row) -> bool {
     (one.depth() - two.depth()).abs() <= ALIKE.0.max(ALIKE.1 * one.depth())
 }
 
-/// True when two rows share ground.
-pub fn overlap(views: &[Turned], one: &Row, two: &Row) -> bool {
+/// True when the middle of one of two rows lies in the other.
+fn overlap(views: &[Turned], one: &Row, two: &Row) -> bool {
     let holds = |row: &Row, other: &Row| {
         let at = [other.along, other.across].map(|ends| f64::midpoint(ends[0], ends[1]));
         let [u, v] = views[row.direction].place(views[other.direction].to_map(at));
@@ -115,7 +118,7 @@ pub fn overlap(views: &[Turned], one: &Row, two: &Row) -> bool {
 }
 
 /// Pairs of lines between which something stands, with floor on both sides.
-fn candidates(view: &Turned) -> Vec<Block> {
+fn candidates(view: &Turned) -> Vec<Row> {
     let columns = |metres: f64| (metres / view.cell).round() as usize;
     let least = columns(OBLONG.0);
     let close = |touched: &Vec<bool>| {
@@ -143,7 +146,7 @@ fn candidates(view: &Turned) -> Vec<Block> {
 }
 
 /// Of a range of columns between two lines, the pieces that stand free.
-fn standing(view: &Turned, lines: [usize; 2], from: usize, to: usize) -> Vec<Block> {
+fn standing(view: &Turned, lines: [usize; 2], from: usize, to: usize) -> Vec<Row> {
     let columns = |metres: f64| (metres / view.cell).round() as usize;
     let across = lines.map(|line| view.offsets[line]);
     let depth = across[1] - across[0];
@@ -174,7 +177,7 @@ fn standing(view: &Turned, lines: [usize; 2], from: usize, to: usize) -> Vec<Blo
         // What is thin and shows nothing of its inside is a wall, where it does not stand by itself.
         let is_wall = taken > SHELL && (depth < WALL[0] || depth < WALL[1] && ends[1] > ENDS[0]);
         if (taken >= TAKEN || depth < LANE) && !is_wall && is_open && !has_lane(view, piece, across) {
-            found.push(Block { row, taken });
+            found.push(row);
         }
     }
     found

@@ -45,8 +45,9 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], rows: &[Ro
     };
     let mut found: Vec<Row> = known.iter().filter_map(whole).collect();
     let mut blocks = blocks::find(views, &found);
-    for block in &mut blocks {
-        block.between = found.iter().filter(|row| blocks::overlap(views, row, block)).find_map(|row| row.between);
+    let rows = blocks::overlapping(views, &blocks, &found);
+    for (block, rows) in blocks.iter_mut().zip(rows) {
+        block.between = rows.into_iter().find_map(|n| found[n].between);
     }
     // Of a block both faces are seen.
     let weight = |row: &Row| if blocks.contains(row) { SEEN_BOTH * row.length() } else { row.length() };
