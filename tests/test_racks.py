@@ -74,12 +74,25 @@ def test_walls_that_end_in_a_room_are_no_racks() -> None:
     assert racks(picture) == []
 
 
-@pytest.mark.parametrize("name", ["isaac_iw_hub_warehouse", "svl_warehouse"])
-def test_the_racks_of_maps_of_others_are_of_one_depth(name: str, shared: Path) -> None:
+@pytest.mark.parametrize(
+    ("name", "count", "length"), [("isaac_iw_hub_warehouse", 2, 16.2), ("svl_warehouse", 10, 14.6)]
+)
+def test_the_racks_of_maps_of_others_are_of_one_depth_and_length(
+    name: str, count: int, length: float, shared: Path
+) -> None:
     found = groundplan.survey(groundplan.read(shared / "maps" / f"{name}.yaml")).of_kind("rack")
-    assert len(found) == {"isaac_iw_hub_warehouse": 3, "svl_warehouse": 10}[name]
+    assert len(found) == count
     depths = [label["width"] for label in found]
     assert max(depths) - min(depths) < 0.2
+    for label in found:
+        assert np.hypot(*np.subtract(*label["axis"])) == pytest.approx(length, abs=0.4)
+
+
+def test_a_rack_at_a_wall_is_like_those_that_stand_free() -> None:
+    picture = hall()
+    for x in (0.0, 10.0, 20.0):
+        put(picture, x, 10.0, 1.1, 16.0, 0)
+    assert len(racks(picture)) == 3
 
 
 SMALL: dict[str, Any] = {"scan_every": 0.6, "beams": 480}

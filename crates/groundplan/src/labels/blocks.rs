@@ -4,15 +4,16 @@
 use super::near::Near;
 use super::racks::{DEPTH, Row, apart};
 use super::turned::Turned;
+use std::ops::Range;
 
 /// Floor shows before a block's faces from so far to so far off, metres.
 const FRONT: [f64; 2] = [0.15, 0.65];
 /// A column before a face is floor when no more of it than this is not free.
 const FLOOR: f64 = 0.3;
 /// Least share of a block's length before both of whose faces floor shows.
-const STANDS: f64 = 0.85;
+const STANDS: f64 = 0.8;
 /// A face goes on over gaps as long as this, metres: between posts and goods.
-const GAP: f64 = 1.0;
+const GAP: f64 = 1.5;
 /// What stands before a block is no longer than this, metres.
 const BEFORE: f64 = 2.0;
 /// Least share of a block's length on which something touches each of its faces.
@@ -37,9 +38,17 @@ const WALL: [f64; 2] = [0.5, 0.8];
 /// Blocks are of a kind when their depths differ by no more than so much, metres, or than that share; and what is taken of them.
 const ALIKE: (f64, f64) = (0.15, 0.1);
 const TAKEN_ALIKE: f64 = 0.4;
-/// So many of a kind are racks, of which two have no more than so much floor between them, metres.
+/// So many of a kind are racks, of which two have no more than so much floor between them, metres; and two that are so many
+/// times as long as deep, side by side and as long as one another.
 const KIND: usize = 3;
+const LONG: f64 = 8.0;
 const AISLE: f64 = 10.0;
+
+/// One block is not so many times as long as another that is like it.
+const LONGER: f64 = 1.3;
+
+/// Before which of a block's faces, below and above, floor is asked for.
+type Fronts = [bool; 2];
 
 /// What may be one.
 struct Block {
@@ -50,14 +59,26 @@ struct Block {
 
 /// The blocks of a kind that stand in rows. Rows of racks that are known already count for their kind.
 pub fn find(views: &[Turned], known: &[Row]) -> Vec<Row> {
-    let found = apart(views, views.iter().flat_map(candidates).collect(), Row::length);
+    let standing = |fronts: Fronts| views.iter().flat_map(|view| candidates(view, fronts)).collect();
+    let found = apart(views, standing([true, true]), Row::length);
     let count = found.len();
     let others = overlapping(views, known, &found);
     let others = known.iter().zip(&others).filter(|(_, blocks)| blocks.is_empty()).map(|(row, _)| row.clone());
     let block = |row: Row| Block { taken: inner(&views[row.direction], &row), row };
     let blocks: Vec<Block> = found.into_iter().chain(others).map(block).collect();
     let is_one = |block: &&Block| is_racks(&kind(&blocks, block));
-    blocks[..count].iter().filter(is_one).map(|block| block.row.clone()).collect()
+    let mut racks: Vec<Row> = blocks[..count].iter().filter(is_one).map(|block| block.row.clone()).collect();
+    if racks.is_empty() {
+        return racks;
+    }
+    // What is like one of them and stands beside it is one too, be the floor on its other side not seen.
+    let leaning = [[true, false], [false, true]].into_iter().flat_map(standing).collect();
+    let mut leaning = apart(views, leaning, Row::length);
+    let is_like = |row: &Row, rack: &Row| beside(row, rack) && are_alike(rack, row) && is_as_long(row, rack);
+    leaning.retain(|row| racks.iter().any(|rack| is_like(row, rack)));
+    let met = overlapping(views, &leaning, &racks);
+    racks.extend(leaning.into_iter().zip(met).filter(|(_, racks)| racks.is_empty()).map(|(row, _)| row));
+    racks
 }
 
 /// For each row those of others that share ground with it.
@@ -79,11 +100,15 @@ fn kind<'a>(blocks: &'a [Block], of: &Block) -> Vec<&'a Block> {
 
 /// True when there are enough of a kind, and two of them stand side by side or one behind the other.
 fn is_racks(kind: &[&Block]) -> bool {
+    let is_long = |row: &Row| row.length() >= LONG * row.depth();
+    let is_pair = |one: &Row, two: &Row| beside(one, two) && is_as_long(one, two) && is_long(one) && is_long(two);
     let is_near = |n: usize| {
-        let near = |other: &&Block| beside(&other.row, &kind[n].row) || behind(&other.row, &kind[n].row);
-        kind[..n].iter().any(near)
+        let near = |other: &Row| beside(other, &kind[n].row) || behind(other, &kind[n].row);
+        kind[..n]
+            .iter()
+            .any(|other| if kind.len() < KIND { is_pair(&other.row, &kind[n].row) } else { near(&other.row) })
     };
-    kind.len() >= KIND && (0..kind.len()).any(is_near)
+    (0..kind.len()).any(is_near)
 }
 
 /// True when no more than an aisle lies between the long sides of two rows.
@@ -96,6 +121,11 @@ pub fn beside(one: &Row, two: &Row) -> bool {
 /// True when no more than an aisle lies between the ends of two rows.
 fn behind(one: &Row, two: &Row) -> bool {
     one.direction == two.direction && gap(one.across, two.across) < 0.0 && gap(one.along, two.along) <= AISLE
+}
+
+/// True when two rows are about as long.
+fn is_as_long(one: &Row, two: &Row) -> bool {
+    (1.0 / LONGER..=LONGER).contains(&(one.length() / two.length()))
 }
 
 fn gap(one: [f64; 2], two: [f64; 2]) -> f64 {
@@ -117,8 +147,8 @@ fn overlap(views: &[Turned], one: &Row, two: &Row) -> bool {
     holds(one, two) || holds(two, one)
 }
 
-/// Pairs of lines between which something stands, with floor on both sides.
-fn candidates(view: &Turned) -> Vec<Row> {
+/// Pairs of lines between which something stands, with floor before it.
+fn candidates(view: &Turned, fronts: Fronts) -> Vec<Row> {
     let columns = |metres: f64| (metres / view.cell).round() as usize;
     let least = columns(OBLONG.0);
     let close = |touched: &Vec<bool>| {
@@ -136,7 +166,7 @@ fn candidates(view: &Turned) -> Vec<Row> {
             for &[a, b] in &runs[n] {
                 for &[c, d] in runs[m].iter().filter(|[c, d]| a.max(*c) + least <= b.min(*d)) {
                     if high - low >= THINNEST {
-                        found.extend(standing(view, [n, m], a.max(c), b.min(d)));
+                        found.extend(standing(view, [n, m], fronts, a.max(c)..b.min(d)));
                     }
                 }
             }
@@ -146,13 +176,15 @@ fn candidates(view: &Turned) -> Vec<Row> {
 }
 
 /// Of a range of columns between two lines, the pieces that stand free.
-fn standing(view: &Turned, lines: [usize; 2], from: usize, to: usize) -> Vec<Row> {
+fn standing(view: &Turned, lines: [usize; 2], fronts: Fronts, range: Range<usize>) -> Vec<Row> {
     let columns = |metres: f64| (metres / view.cell).round() as usize;
     let across = lines.map(|line| view.offsets[line]);
     let depth = across[1] - across[0];
-    let below = view.some_blocked(from..to, across[0] - FRONT[1], across[0] - FRONT[0]);
-    let above = view.some_blocked(from..to, across[1] + FRONT[0], across[1] + FRONT[1]);
-    let free: Vec<bool> = below.iter().zip(&above).map(|(a, b)| *a < FLOOR && *b < FLOOR).collect();
+    let from = range.start;
+    let below = view.some_blocked(range.clone(), across[0] - FRONT[1], across[0] - FRONT[0]);
+    let above = view.some_blocked(range, across[1] + FRONT[0], across[1] + FRONT[1]);
+    let free: Vec<bool> =
+        below.iter().zip(&above).map(|(a, b)| (*a < FLOOR || !fronts[0]) && (*b < FLOOR || !fronts[1])).collect();
     let share = |flags: &[bool]| flags.iter().filter(|flag| **flag).count() as f64 / flags.len() as f64;
     let mut found = Vec::new();
     for [s, e] in closed(&free, columns(BEFORE)) {
@@ -190,7 +222,7 @@ fn inner(view: &Turned, row: &Row) -> f64 {
 }
 
 /// True where one can go through all along.
-fn has_lane(view: &Turned, piece: std::ops::Range<usize>, across: [f64; 2]) -> bool {
+fn has_lane(view: &Turned, piece: Range<usize>, across: [f64; 2]) -> bool {
     let steps = ((across[1] - across[0] - LANE) / view.cell).floor().max(-1.0);
     (0..(steps + 1.0) as usize).any(|n| {
         let low = across[0] + n as f64 * view.cell;
