@@ -45,9 +45,9 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], rows: &[Ro
     };
     let mut found: Vec<Row> = known.iter().filter_map(whole).collect();
     let mut blocks = blocks::find(views, &found);
-    let rows = blocks::overlapping(views, &blocks, &found);
-    for (block, rows) in blocks.iter_mut().zip(rows) {
-        block.between = rows.into_iter().find_map(|n| found[n].between);
+    let met = blocks::overlapping(views, &blocks, rows);
+    for (block, met) in blocks.iter_mut().zip(met) {
+        block.between = met.into_iter().find_map(|n| rows[n].between);
     }
     // Of a block both faces are seen.
     let weight = |row: &Row| if blocks.contains(row) { SEEN_BOTH * row.length() } else { row.length() };
