@@ -24,7 +24,8 @@ const RIM: f64 = 0.4;
 pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Label> {
     let Sketch { views, plan, free } = sketch;
     let Plan { strips, meetings, ends, extents, rows } = plan;
-    let rows = whole::find(&views, &strips, &extents, &rows);
+    let between = rows;
+    let rows = whole::find(&views, &strips, &extents, &between);
 
     // A face is of one junction at most, and of one corridor.
     let mut faces = Faces::new(division, |state| state == State::Free);
@@ -65,7 +66,7 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
             Label::Corridor { faces: faces.take(&polygon), polygon, axis, width: tidy(strip.width()), name }
         })
         .collect();
-    let racked = racked(&views, &strips, &extents, &meetings, &rows);
+    let racked = racked(&views, &strips, &extents, &meetings, [&rows, &between]);
     labels.extend(junctions);
     let squares = squares(evidence, &views, &strips);
     let Some((space, bars)) = free else {
@@ -90,7 +91,13 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
 }
 
 /// The racks' own ground, and, with a rim round it, the corridors along racks and those that cross them.
-fn racked(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], meetings: &[Meeting], rows: &[Row]) -> Racked {
+fn racked(
+    views: &[Turned],
+    strips: &[Strip],
+    extents: &[[f64; 2]],
+    meetings: &[Meeting],
+    [rows, between]: [&[Row]; 2],
+) -> Racked {
     if rows.is_empty() {
         return Racked::default();
     }
@@ -107,7 +114,10 @@ fn racked(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], meetings: &[
         let strip = &strips[n];
         rectangle(&views[strip.direction], extents[n], strip.across)
     });
-    let grounds = rows.iter().map(|row| {
+    // What a rack leaves of the row between two corridors leads from one to the other, and is a way too.
+    let left =
+        between.iter().filter(|row| rows.iter().any(|rack| rack.between.is_some() && rack.between == row.between));
+    let grounds = rows.iter().chain(left).map(|row| {
         let wider = |[low, high]: [f64; 2]| [low - RIM, high + RIM];
         rectangle(&views[row.direction], wider(row.along), wider(row.across))
     });
