@@ -106,6 +106,19 @@ def test_only_what_the_patch_touches_is_looked_at(monkeypatch: pytest.MonkeyPatc
     assert asked == [((top - 40 - reach, top + reach), (50 - reach, 80 + reach))]
 
 
+def test_a_map_that_is_looked_at_square_by_square_keeps_what_did_not_change() -> None:
+    # More than 16 million pixels.
+    block = np.kron(ZOO["rows_of_offices"](), np.ones((2, 2), np.uint8))
+    pixels = np.tile(block, [-(-4200 // n) for n in block.shape])[:4200, :4200]
+    now = groundplan.from_array(pixels, 0.05)
+    survey = groundplan.survey(now, keep=True)
+    for row, column in ((300, 400), (2000, 2050), (4100, 4100)):
+        patch = now.pixels[row : row + 90, column : column + 90].T.copy()
+        now = with_patch(now, patch, row, column)
+        survey = survey.update(patch, row, column)
+    assert survey.to_json() == groundplan.survey(now).to_json()
+
+
 def test_a_survey_stays_what_it_is_when_another_is_made_of_it() -> None:
     map = tower()
     before = map.pixels.copy()

@@ -6,6 +6,7 @@ import numpy.typing as npt
 __all__ = [
     "Labels",
     "Locator",
+    "Memory",
     "Ways",
     "find_adjacency",
     "find_directions",
@@ -61,6 +62,9 @@ class Locator:
     def locate_all(self, array: _Points) -> npt.NDArray[np.int32]: ...
     def labels_at(self, x: float, y: float) -> list[int]: ...
     def along(self, way: _Points) -> npt.NDArray[np.uint32]: ...
+
+@final
+class Memory: ...
 
 @final
 class Ways:

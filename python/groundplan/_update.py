@@ -2,7 +2,7 @@
 
 A pixel bears on the gradients around it as far as their window reaches: 8 to 33 pixels. What is found there takes the
 place of what was there, so the gradients are those of the whole map as it is now, and with them every stage that
-follows.
+follows. What labels are found from is known again by keys (the core's `labels/recall.rs`).
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def update(survey: Survey, change: Any, row: int | None, column: int | None, thr
     for area in areas:
         fresh = _core.find_gradients_in(grid, (new.height, 0), *area, values, count)
         gradients = replaced(gradients, fresh, area)
-    parts = {"gradients": gradients}
+    parts = {"gradients": gradients, "memory": known["_memory"]}
     if all(np.array_equal(before[name], gradients[name]) for name in before):
         # Nothing that is occupied has changed: the lines stay, be they on other ground.
         parts |= {"directions": record(survey.directions), "lines": record(survey.lines)}

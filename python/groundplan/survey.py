@@ -234,8 +234,8 @@ class Survey(Stage):
     ) -> Survey:
         """The survey of the map after a change, with the bytes that a survey of the whole map has.
 
-        Gradients are found again around the change alone; what follows from them, from the directions on, is made anew.
-        This survey and its map stay as they are.
+        Gradients are found again around the change alone. What follows is made anew, but for the corridors that may be
+        and the narrows where neither the map nor a line has changed. This survey and its map stay as they are.
 
         Parameters
         ----------
@@ -373,7 +373,8 @@ def survey(
     threads
         At most so many; all cores by default. Any number gives the same survey.
     keep
-        Keep the gradients for `Survey.update`, 13 bytes for each edge pixel; the first update finds them again if not.
+        Keep for `Survey.update` the gradients, 13 bytes for each edge pixel, and what was found on the way to the
+        labels; the first update finds them again if not.
     client
         A ``dask.distributed.Client``: its workers do what has to be done on pixels. `map` may be a file's path then; of
         an 8-bit PGM, a Zarr array and a GeoTIFF the workers read the rows that they need by themselves.
@@ -447,7 +448,8 @@ def surveyed(
         **{name: made(kind, found[name]) for name, kind in stages.items()},
     )
     # For its routes and its updates, and no part of what it is.
-    survey.__dict__.update(_map=map, _own=own, _gradients=found["gradients"])
+    kept = {"_gradients": found["gradients"], "_memory": found["memory"]} if keep else {}
+    survey.__dict__.update(_map=map, _own=own, **kept)
     labels: _core.Labels = found["labels"]
     some = Table(len(labels), lambda some: labels.some(*some.indices(len(labels))[:2]), LABELS)
     cut, walls = survey.subdivision, survey.walls

@@ -190,6 +190,10 @@ fn sums(array: &Bound<'_, PyAny>) -> PyResult<FaceSums> {
     Ok(made)
 }
 
+/// What a survey keeps for another one.
+#[pyclass(frozen, module = "groundplan._core")]
+pub struct Memory(pub groundplan::Memory);
+
 /// The stages that are given, by their names.
 pub fn given(dict: &Bound<'_, PyDict>, frame: &Frame) -> PyResult<Given> {
     let record = |name: &str| -> PyResult<Option<Bound<'_, PyDict>>> {
@@ -200,6 +204,10 @@ pub fn given(dict: &Bound<'_, PyDict>, frame: &Frame) -> PyResult<Given> {
         directions: record("directions")?.as_ref().map(directions).transpose()?,
         lines: record("lines")?.as_ref().map(lines).transpose()?,
         sums: dict.get_item("sums")?.as_ref().map(sums).transpose()?,
+        memory: dict
+            .get_item("memory")?
+            .map(|kept| Ok::<_, PyErr>(kept.cast::<Memory>()?.get().0.clone()))
+            .transpose()?,
         keep: false,
     };
     if let Some(lines) = &given.lines {

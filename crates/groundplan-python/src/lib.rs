@@ -10,6 +10,8 @@ mod queries;
 /// The method, as Python sees it. Every stage takes and gives dictionaries of arrays, which `groundplan.survey` wraps.
 #[pyo3::pymodule]
 mod _core {
+    #[pymodule_export]
+    use crate::convert::Memory;
     use crate::convert::{self, Layout, Named};
     #[pymodule_export]
     use crate::labels::Labels;
@@ -55,6 +57,7 @@ mod _core {
         let gradients = keep.then_some(made.gradients).map(|kept| convert::from_gradients(py, kept)).transpose()?;
         Ok(Named::new(py)
             .with("gradients", gradients)?
+            .with("memory", Memory(made.memory))?
             .with("directions", convert::from_directions(py, made.directions)?)?
             .with("radiograms", convert::from_radiograms(py, &made.radiograms)?)?
             .with("lines", convert::from_lines(py, made.lines)?)?
@@ -281,6 +284,7 @@ mod _core {
                 lines: &lines,
                 parameters: &parameters,
                 threads,
+                recall: &groundplan::Recall::default(),
             };
             let division = labels::Division { subdivision: &subdivision, occupancy: &occupancy, adjacency: &adjacency };
             let made = labels::find_labels(&evidence, &division);

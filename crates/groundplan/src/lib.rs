@@ -52,7 +52,7 @@ pub mod walls;
 pub mod wavelets;
 
 pub use grid::{Frame, Grid, State, Table};
-pub use labels::{JunctionKind, Label};
+pub use labels::{JunctionKind, Label, Memory, Recall};
 pub use parameters::{ParameterError, Parameters, TABLE, Value};
 pub use survey::{Given, Survey, Warning, survey, survey_sparingly};
 

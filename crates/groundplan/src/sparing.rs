@@ -8,7 +8,9 @@ use crate::coverage::Coverage;
 use crate::directions::find_directions;
 use crate::gradients::{Gradients, find_gradients, find_gradients_in};
 use crate::grid::Grid;
-use crate::labels::{Division, Evidence, Ground, Sight, Sketch, find_confidence, find_labels_in, find_patterns};
+use crate::labels::{
+    Division, Evidence, Ground, Memory, Recall, Sight, Sketch, find_confidence, find_labels_in, find_patterns,
+};
 use crate::lines::find_lines;
 use crate::occupancy::Occupancy;
 use crate::parameters::Parameters;
@@ -26,6 +28,7 @@ const ROWS: usize = 1024;
 /// As [`crate::survey`] makes it, with labels by strips; but neither gradients nor adjacency are kept. The number of
 /// edge pixels comes with it.
 pub(crate) fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> (Survey, usize) {
+    let recall = Recall::default();
     let frame = &grid.frame;
     let gradients = given.gradients.unwrap_or_else(|| find_gradients(grid, parameters, threads));
     let count = gradients.pixels.len();
@@ -33,15 +36,30 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads
     let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
     let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
     let sight = {
-        let evidence =
-            Evidence { grid, gradients: &gradients, directions: &directions, lines: &lines, parameters, threads };
-        side_by_side(1, |side| Sight::new(side, &evidence, Ground::start(side, grid, threads)).done())
+        let evidence = Evidence {
+            grid,
+            gradients: &gradients,
+            directions: &directions,
+            lines: &lines,
+            parameters,
+            threads,
+            recall: &recall,
+        };
+        side_by_side(1, |side| Sight::new(side, &evidence, Ground::start(side, grid, threads, &recall)).done())
     };
     // The labels' racks need specks, and no other stage needs gradients but the coverage of edges, which takes them
     // part by part.
     let specks = gradients.specks();
     drop(gradients);
-    let evidence = Evidence { grid, gradients: &specks, directions: &directions, lines: &lines, parameters, threads };
+    let evidence = Evidence {
+        grid,
+        gradients: &specks,
+        directions: &directions,
+        lines: &lines,
+        parameters,
+        threads,
+        recall: &recall,
+    };
 
     let sketch = Sketch::new(&evidence, sight);
     let arranged = || arrange(frame, &directions.angles, &lines, threads);
@@ -75,6 +93,7 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads
     let subdivision = Subdivision::new(frame, arrangement, threads);
     let walls = find_walls(&subdivision, &occupancy, parameters);
     let survey = Survey {
+        memory: Memory::default(),
         patterns: find_patterns(&directions, &labels),
         gradients: Gradients::default(),
         directions,

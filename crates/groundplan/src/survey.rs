@@ -7,8 +7,8 @@ use crate::directions::{Directions, find_directions};
 use crate::gradients::{Gradients, find_gradients};
 use crate::grid::Grid;
 use crate::labels::{
-    Division, Evidence, Ground, Label, Pattern, Sight, Sketch, find_confidence, find_labels, find_labels_in,
-    find_patterns,
+    Division, Evidence, Ground, Label, Memory, Pattern, Recall, Sight, Sketch, find_confidence, find_labels,
+    find_labels_in, find_patterns,
 };
 use crate::lines::{Lines, find_lines};
 use crate::occupancy::{Occupancy, find_occupancy};
@@ -53,6 +53,8 @@ pub struct Survey {
     pub patterns: Vec<Pattern>,
     /// Partial trouble.
     pub warnings: Vec<Warning>,
+    /// What is kept for a survey after the map has changed.
+    pub memory: Memory,
 }
 
 /// Stages' results that are given, not found: how one stage is replaced.
@@ -66,7 +68,10 @@ pub struct Given {
     pub lines: Option<Lines>,
     /// What the pixels add to the faces that these lines make.
     pub sums: Option<FaceSums>,
-    /// The gradients will be wanted again; where the map is large they are let go if not.
+    /// What a survey of the same parameters kept.
+    pub memory: Option<Memory>,
+    /// The gradients, and what is found on the way to the labels, will be wanted again: where the map is large they are
+    /// let go if not.
     pub keep: bool,
 }
 
@@ -79,14 +84,22 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
         return survey_sparingly(grid, parameters, given, threads);
     }
     // What the labels need of the pixels alone, and then of the lines, is made beside the other stages.
+    let recall = Recall::new(given.keep.then(|| given.memory.unwrap_or_default()));
     let mut survey = side_by_side(threads, |side| {
-        let ground = strips.then(|| Ground::start(side, grid, threads));
+        let ground = strips.then(|| Ground::start(side, grid, threads, &recall));
         let gradients = given.gradients.unwrap_or_else(|| find_gradients(grid, parameters, threads));
         let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters, threads));
         let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
         let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
-        let evidence =
-            Evidence { grid, gradients: &gradients, directions: &directions, lines: &lines, parameters, threads };
+        let evidence = Evidence {
+            grid,
+            gradients: &gradients,
+            directions: &directions,
+            lines: &lines,
+            parameters,
+            threads,
+            recall: &recall,
+        };
         let (divided, labels, confidence) = side_by_side(threads, |side| {
             let divided = side.start(|| Divided::new(&evidence, given.sums));
             let sketch = ground.map(|ground| Sketch::beside(&evidence, Sight::new(side, &evidence, ground)));
@@ -115,8 +128,10 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
             confidence,
             patterns,
             warnings,
+            memory: Memory::default(),
         }
     });
+    survey.memory = recall.memory();
     survey.warnings = find_warnings(&survey, survey.gradients.pixels.len(), parameters);
     debug_assert_eq!(survey.subdivision.problems(), Vec::<String>::new());
     debug_assert_eq!(survey.occupancy.pixels.iter().sum::<u64>(), (grid.frame.width * grid.frame.height) as u64);
@@ -142,7 +157,7 @@ struct Divided {
 
 impl Divided {
     fn new(evidence: &Evidence, given: Option<FaceSums>) -> Self {
-        let Evidence { grid, gradients, directions, lines, parameters, threads } = *evidence;
+        let Evidence { grid, gradients, directions, lines, parameters, threads, .. } = *evidence;
         let frame = &grid.frame;
         let arrangement = arrange(frame, &directions.angles, lines, threads);
         let fits = |sums: &FaceSums| sums.fits(&arrangement);

@@ -5,11 +5,12 @@
 //! Gaps in a side shorter than a rack's bay are the bay; longer ones are where other ways open. Of strips that overlap
 //! the one with the most wall along it is kept, and the others keep what is left of them.
 
+use super::recall::{Key, Recall};
 use super::turned::{IMPASSABLE, Turned};
 use super::{Evidence, barriers, ragged};
 use crate::bands::map_each;
 use crate::parameters::Parameters;
-use std::ops::AddAssign;
+use std::ops::{AddAssign, Range};
 
 /// A strip of free space along one direction, in the direction's own places (metres along and across).
 #[derive(Clone, Debug, PartialEq)]
@@ -107,10 +108,11 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
     let threads = evidence.threads.div_ceil(views.len().max(1));
     let found = map_each(views.len(), evidence.threads, |n| {
         let family = Family::new(evidence, views, &views[n]);
-        let (whole, parts): (Vec<_>, Vec<_>) = family.candidates(threads).into_iter().partition(|c| c.is_corridor);
+        let (whole, parts): (Vec<_>, Vec<_>) =
+            family.candidates(threads, evidence.recall).into_iter().partition(|c| c.is_corridor);
         let mut known = family.best(whole, &[]);
         let sure: Vec<Strip> = known.iter().filter(|strip| !strip.bays).cloned().collect();
-        let ragged = ragged::find(views, &views[n], evidence.parameters, &sure, threads);
+        let ragged = ragged::find(evidence, views, &views[n], &sure, threads);
         // What is no corridor as a whole may be one without what others have of it.
         known.extend(family.best(parts, &[&known[..], &ragged].concat()));
         known.sort_by(|a, b| a.middle().total_cmp(&b.middle()).then(a.along[0].total_cmp(&b.along[0])));
@@ -181,7 +183,7 @@ impl<'a> Family<'a> {
     }
 
     /// The strips between every two lines that are a corridor's width apart.
-    fn candidates(&self, threads: usize) -> Vec<Candidate> {
+    fn candidates(&self, threads: usize, recall: &Recall) -> Vec<Candidate> {
         let above = |low: usize| {
             let mut found = Vec::new();
             for high in low + 1..self.view.offsets.len() {
@@ -192,11 +194,19 @@ impl<'a> Family<'a> {
                 }
                 if width >= self.parameters.labels_min_width {
                     let sides = [low, high];
-                    for open in self.open(across) {
-                        let columns = self.columns(sides, open.clone());
-                        let pieces = self.pieces(&columns, open.start, across).into_iter();
-                        found.extend(pieces.map(|(strip, is_corridor)| Candidate { strip, sides, is_corridor }));
-                    }
+                    let key = || {
+                        let key = self.view.key(across, BESIDE.1).with(u64::from(self.racked));
+                        self.pitches.iter().copied().fold(key, Key::number)
+                    };
+                    let pieces = recall.strips.or_find(key, || {
+                        let pieces = |open: Range<usize>| {
+                            let columns = self.columns(sides, open.clone());
+                            self.pieces(&columns, open.start, across)
+                        };
+                        self.open(across).into_iter().flat_map(pieces).collect()
+                    });
+                    let candidate = |(strip, is_corridor): (Strip, bool)| Candidate { strip, sides, is_corridor };
+                    found.extend(pieces.into_iter().map(candidate));
                 }
             }
             found
@@ -205,7 +215,7 @@ impl<'a> Family<'a> {
     }
 
     /// The stretches of a strip that are not closed and are long enough for a corridor.
-    fn open(&self, across: [f64; 2]) -> Vec<std::ops::Range<usize>> {
+    fn open(&self, across: [f64; 2]) -> Vec<Range<usize>> {
         let (view, width) = (self.view, across[1] - across[0]);
         let margin = MARGIN.min(0.2 * width);
         let blocked = view.blocked_in(across[0] + margin, across[1] - margin);
@@ -233,7 +243,7 @@ impl<'a> Family<'a> {
     }
 
     /// What some columns between two lines hold.
-    fn columns(&self, [low, high]: [usize; 2], range: std::ops::Range<usize>) -> Vec<Column> {
+    fn columns(&self, [low, high]: [usize; 2], range: Range<usize>) -> Vec<Column> {
         let across = [self.view.offsets[low], self.view.offsets[high]];
         let width = across[1] - across[0];
         let inner = INNER.min(0.25 * width);
@@ -272,7 +282,7 @@ impl<'a> Family<'a> {
     }
 
     /// What stronger rivals leave of a strip's columns.
-    fn left(&self, strip: &Strip, kept: &[Strip]) -> Vec<std::ops::Range<usize>> {
+    fn left(&self, strip: &Strip, kept: &[Strip]) -> Vec<Range<usize>> {
         let (from, to) = self.range(strip);
         let mut left = vec![(from, to)];
         for rival in kept {

@@ -21,6 +21,7 @@ mod pitch;
 mod places;
 mod racks;
 mod ragged;
+mod recall;
 mod rooms;
 mod sections;
 mod sketch;
@@ -31,6 +32,7 @@ mod whole;
 
 pub use confidence::find_confidence;
 pub use patterns::{Pattern, PatternKind, find_patterns};
+pub use recall::{Memory, Recall};
 
 use crate::adjacency::Adjacency;
 use crate::bands::{Later, Side, side_by_side};
@@ -201,6 +203,8 @@ pub struct Evidence<'a> {
     pub parameters: &'a Parameters,
     /// At most so many.
     pub threads: usize,
+    /// What is known from before.
+    pub recall: &'a Recall,
 }
 
 /// The map as its lines divide it: what the labels' faces are taken from.
@@ -222,9 +226,9 @@ pub(crate) struct Ground<'scope, 'a> {
 
 impl<'scope, 'a: 'scope> Ground<'scope, 'a> {
     /// Begins to look at a map.
-    pub fn start(side: Side<'scope, '_>, grid: &'scope Grid<'a>, threads: usize) -> Self {
+    pub fn start(side: Side<'scope, '_>, grid: &'scope Grid<'a>, threads: usize, recall: &'scope Recall) -> Self {
         let look = side.start(move || Look::new(grid, &Tiles::new(grid, threads)));
-        Self { look, space: side.start(move || Space::new(grid, threads)) }
+        Self { look, space: side.start(move || Space::new(grid, threads, recall)) }
     }
 }
 
@@ -234,7 +238,7 @@ pub fn find_labels(evidence: &Evidence, division: &Division) -> Vec<Label> {
     match evidence.parameters.labels_method {
         Method::Paper => paper::find(evidence, division),
         Method::Strips => side_by_side(evidence.threads, |side| {
-            let ground = Ground::start(side, evidence.grid, evidence.threads);
+            let ground = Ground::start(side, evidence.grid, evidence.threads, evidence.recall);
             find_labels_in(evidence, division, Sketch::beside(evidence, Sight::new(side, evidence, ground)))
         }),
     }

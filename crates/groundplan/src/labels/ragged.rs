@@ -4,11 +4,10 @@
 //! within a share of its width beyond, the column speaks for a way along it, wherever in there the side may stand. A
 //! long way that nothing narrows needs no more of a side than machines or pallets in a row, with gaps between them.
 
-use super::barriers;
 use super::corridors::{self, Strip, best_pieces, close};
 use super::turned::{IMPASSABLE, Shares, Turned};
+use super::{Evidence, barriers};
 use crate::bands::map_each;
-use crate::parameters::Parameters;
 use std::ops::Range;
 
 /// Widths are tried in such steps, and places across in such shares of the width.
@@ -56,8 +55,8 @@ const OPEN: i64 = 7;
 const BLOCKED: i64 = 20;
 
 /// What holds a side.
-#[derive(Clone, Copy, PartialEq)]
-enum Held {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Held {
     /// Much of what lies beyond the strip's border is not free.
     Deep,
     /// Something stands there, now and then.
@@ -73,7 +72,8 @@ impl Held {
 }
 
 /// The ways along one direction beside those that are known, the best first.
-pub fn find(views: &[Turned], view: &Turned, parameters: &Parameters, known: &[Strip], threads: usize) -> Vec<Strip> {
+pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip], threads: usize) -> Vec<Strip> {
+    let parameters = evidence.parameters;
     let bay = corridors::pitches(views, view).into_iter().fold(0.0, |widest, pitch| f64::max(widest, BAY * pitch));
     let seen = Seen::new(view);
     let mut tried = Vec::new();
@@ -93,9 +93,12 @@ pub fn find(views: &[Turned], view: &Turned, parameters: &Parameters, known: &[S
         width *= WIDER;
     }
     let ways = |(across, deep): &([f64; 2], Option<Held>)| {
-        let candidate = Candidate::new(view, *across, bay);
-        let of = |by: Held| candidate.ways(by).into_iter().map(|way| (way, by)).collect::<Vec<_>>();
-        deep.iter().copied().chain([Held::Thin]).flat_map(of).collect::<Vec<_>>()
+        let key = || view.key(*across, depth(*across)).number(bay).with(u64::from(deep.is_some()));
+        evidence.recall.ragged.or_find(key, || {
+            let candidate = Candidate::new(view, *across, bay);
+            let of = |by: Held| candidate.ways(by).into_iter().map(|way| (way, by)).collect::<Vec<_>>();
+            deep.iter().copied().chain([Held::Thin]).flat_map(of).collect::<Vec<_>>()
+        })
     };
     let parts: Vec<_> = tried.chunks(TOGETHER).collect();
     let mut candidates: Vec<(Strip, Held)> =
@@ -133,11 +136,9 @@ struct Seen<'a> {
 
 impl<'a> Seen<'a> {
     fn new(view: &'a Turned) -> Self {
-        let place = |row: usize| view.start[1] + row as f64 * view.cell;
         let mut below = vec![0];
-        for row in 0..view.size[1] {
-            let occupied = view.occupied_in(place(row), place(row + 1)).over(0..view.size[0]);
-            below.push(below[row] + occupied.into_iter().map(u64::from).sum::<u64>());
+        for (n, row) in view.rows.iter().enumerate() {
+            below.push(below[n] + row.occupied);
         }
         Self { view, below }
     }
@@ -284,8 +285,13 @@ impl<'a> Candidate<'a> {
     }
 }
 
+/// How far beyond a strip's borders its sides may stand, metres.
+fn depth(across: [f64; 2]) -> f64 {
+    DEPTH.1.max(DEPTH.0 * (across[1] - across[0]))
+}
+
 /// Where a strip's sides may stand, across.
 fn beyond(across: [f64; 2]) -> [[f64; 2]; 2] {
-    let depth = DEPTH.1.max(DEPTH.0 * (across[1] - across[0]));
+    let depth = depth(across);
     [[across[0] - depth, across[0]], [across[1], across[1] + depth]]
 }

@@ -4,6 +4,7 @@
 //! A view of few cells keeps its sums from the first row on. One of many keeps squares of cells, and those that are all
 //! alike as one number: most of a large map is.
 
+use super::recall::Key;
 use crate::bands::map_bands;
 use std::cell::Cell;
 use std::ops::Range;
@@ -55,6 +56,20 @@ struct Square {
     barred: [u8; SIDE],
 }
 
+/// A row of cells as a whole.
+#[derive(Clone, Copy)]
+pub struct Told {
+    pub key: Key,
+    /// Occupied samples.
+    pub occupied: u64,
+}
+
+impl Told {
+    fn new(row: &[u8]) -> Self {
+        Self { key: Key::default().bytes(row), occupied: row.iter().map(|cell| u64::from(cell >> 4)).sum() }
+    }
+}
+
 impl Default for Cells {
     fn default() -> Self {
         Self::Squared { width: 0, bands: Vec::new() }
@@ -62,22 +77,33 @@ impl Default for Cells {
 }
 
 impl Cells {
-    /// From what makes the cells of any row, a byte each.
-    pub fn new(width: usize, height: usize, threads: usize, make: impl Fn(usize, &mut [u8]) + Sync) -> Self {
+    /// From what makes the cells of any row, a byte each; and what is told of each row.
+    pub fn new(
+        width: usize,
+        height: usize,
+        threads: usize,
+        make: impl Fn(usize, &mut [u8]) + Sync,
+    ) -> (Self, Vec<Told>) {
         let rows = |band: Range<usize>| {
             let mut cells = vec![0u8; band.len() * width];
             cells.chunks_mut(width).zip(band).for_each(|(row, n)| make(n, row));
-            cells
+            let told: Vec<Told> = cells.chunks(width).map(Told::new).collect();
+            (cells, told)
         };
         if width * height > MANY || height > usize::from(u16::MAX) / SAMPLES {
-            let bands = map_bands(height, threads, |band| Band::new(width, &rows(band)));
-            return Self::Squared { width, bands };
+            let made = map_bands(height, threads, |band| {
+                let (cells, told) = rows(band);
+                (Band::new(width, &cells), told)
+            });
+            let (bands, told): (_, Vec<_>) = made.into_iter().unzip();
+            return (Self::Squared { width, bands }, told.concat());
         }
-        let cells = map_bands(height, threads, rows).concat();
+        let (cells, told): (Vec<_>, Vec<_>) = map_bands(height, threads, rows).into_iter().unzip();
+        let (cells, told) = (cells.concat(), told.concat());
         let barred = barred(width, &cells);
         let sums = [cumulate(width, &cells, |cell| cell & 15), cumulate(width, &cells, |cell| cell >> 4)];
         let [blocked, occupied] = sums;
-        Self::Summed { width, sums: [blocked, occupied, cumulate(width, &barred, |cell| cell)] }
+        (Self::Summed { width, sums: [blocked, occupied, cumulate(width, &barred, |cell| cell)] }, told)
     }
 
     /// The rows from one to before another.

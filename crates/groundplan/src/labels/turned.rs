@@ -3,7 +3,8 @@
 
 use super::Evidence;
 use super::look::Look;
-use super::sums::{Cells, Rows, What};
+use super::recall::Key;
+use super::sums::{Cells, Rows, Told, What};
 use crate::radiograms::weight;
 use std::ops::Range;
 
@@ -46,6 +47,10 @@ pub struct Turned {
     pub covered: Vec<Vec<bool>>,
     /// The same for what only touches it: posts, and the ends of what lies across.
     pub touched: Vec<Vec<bool>>,
+    /// What is told of each row of cells.
+    pub rows: Vec<Told>,
+    /// Keys of the view without its rows and lines, and of its lines.
+    keys: (Key, Vec<Key>),
 }
 
 impl Turned {
@@ -77,15 +82,18 @@ impl Turned {
             offsets: Vec::new(),
             covered: Vec::new(),
             touched: Vec::new(),
+            rows: Vec::new(),
+            keys: (Key::default(), Vec::new()),
         };
-        made.cells = made.look_at(evidence, look);
+        (made.cells, made.rows) = made.look_at(evidence, look);
         made.cover_lines(evidence);
         made.pitch = super::pitch::find(evidence, &made);
+        made.keys = made.find_keys();
         made
     }
 
     /// The samples that are blocked or occupied in each cell.
-    fn look_at(&self, evidence: &Evidence, look: &Look) -> Cells {
+    fn look_at(&self, evidence: &Evidence, look: &Look) -> (Cells, Vec<Told>) {
         let [nu, nv] = self.size;
         let samples = self.samples as usize;
         let frame = &evidence.grid.frame;
@@ -138,6 +146,27 @@ impl Turned {
                 self.covered[line][column] |= lies;
             }
         }
+    }
+
+    /// Keys of the view and of its lines.
+    fn find_keys(&self) -> (Key, Vec<Key>) {
+        let pitch = self.pitch.map_or(Key::default(), |pitch| Key::default().number(pitch));
+        let numbers = [self.angle, self.cell, self.start[0], self.start[1]];
+        let lines = self.offsets.iter().zip(&self.covered).zip(&self.touched);
+        let key = |((offset, covered), touched): ((&f64, &Vec<bool>), &Vec<bool>)| {
+            Key::default().number(*offset).flags(covered).flags(touched)
+        };
+        (numbers.into_iter().fold(pitch.with(self.direction as u64), Key::number), lines.map(key).collect())
+    }
+
+    /// The key of all that can be seen of a strip, and so far beyond its sides, metres.
+    pub fn key(&self, [low, high]: [f64; 2], beyond: f64) -> Key {
+        // What is rounded to cells reaches a cell farther at most.
+        let ends = [low - beyond - 2.0 * self.cell, high + beyond + 2.0 * self.cell];
+        let (from, to) = self.cells(ends[0], ends[1]);
+        let [first, last] = ends.map(|v| self.offsets.partition_point(|&offset| offset < v));
+        let rows = self.rows[from..to].iter().map(|row| row.key);
+        rows.chain(self.keys.1[first..last].iter().copied()).fold(self.keys.0.number(low).number(high), Key::key)
     }
 
     /// Place along and across of a point of the map frame.

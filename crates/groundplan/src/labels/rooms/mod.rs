@@ -20,6 +20,7 @@ mod runs;
 
 use super::near::Near;
 use super::places::Squares;
+use super::recall::Recall;
 use super::{Division, Evidence, Label, Purpose, outline};
 use crate::grid::{Grid, State, tidy};
 use crate::subdivision::distance;
@@ -121,10 +122,10 @@ pub struct Space {
 
 impl Space {
     /// Nothing when nothing is free.
-    pub fn new(grid: &Grid, threads: usize) -> Option<Self> {
+    pub fn new(grid: &Grid, threads: usize, recall: &Recall) -> Option<Self> {
         let raster = Raster::new(grid, threads)?;
         let clearance = Clearance::new(&raster, threads);
-        let mut narrows = narrows::find(&raster, &clearance, threads);
+        let mut narrows = narrows::find(&raster, &clearance, threads, recall);
         narrows.retain(|narrow| !narrow.is_at_solid(&raster));
         Some(Self { raster, clearance, narrows })
     }

@@ -1,10 +1,12 @@
 //! Narrows: where the free space is tighter than on both sides, whether or not a line leads there.
 
+use super::super::recall::{Key, Recall};
 use super::blocks::Blocks;
 use super::clearance::{Clearance, Rows, within};
 use super::gaps::Bar;
 use super::raster::Raster;
 use crate::bands::map_each;
+use crate::bits::{WORD, lowest};
 use crate::sets::Sets;
 use std::ops::Range;
 
@@ -26,7 +28,7 @@ const SQUARE: usize = 2048;
 const AROUND: f64 = 8.0;
 
 /// Straight closures of all narrows, in the order of the places that they part; on a large raster, square by square.
-pub fn find(raster: &Raster, clearance: &Clearance, threads: usize) -> Vec<Bar> {
+pub fn find(raster: &Raster, clearance: &Clearance, threads: usize, recall: &Recall) -> Vec<Bar> {
     let around = raster.pixels(AROUND).ceil() as usize;
     let square = if raster.len() <= AT_ONCE { raster.len() } else { SQUARE };
     let parts = |size: usize| (0..size).step_by(square).map(move |from| from..size.min(from + square));
@@ -36,20 +38,33 @@ pub fn find(raster: &Raster, clearance: &Clearance, threads: usize) -> Vec<Bar> 
     map_each(squares.len(), threads, |n| {
         let [columns, rows] = &squares[n];
         let window = [wider(columns, raster.width), wider(rows, raster.height)];
-        let (found, corner) = if let Some(pixels) = clearance.whole() {
-            (Window::new(raster, pixels, window).narrows(), [0; 2])
-        } else {
-            let corner = [0, 1].map(|axis| window[axis].start);
-            let pixels = within(raster, window);
-            (Window::new(raster, &pixels, [0..pixels.width, 0..pixels.height]).narrows(), corner)
+        let find = || {
+            let (found, corner) = if let Some(pixels) = clearance.whole() {
+                (Window::new(raster, pixels, window.clone()).narrows(), [0; 2])
+            } else {
+                let corner = [0, 1].map(|axis| window[axis].start);
+                let pixels = within(raster, window.clone());
+                (Window::new(raster, &pixels, [0..pixels.width, 0..pixels.height]).narrows(), corner)
+            };
+            let own = found
+                .into_iter()
+                .filter(|([x, y], _)| columns.contains(&(x + corner[0])) && rows.contains(&(y + corner[1])));
+            let moved = |end: [f64; 2]| [end[0] + corner[0] as f64, end[1] + corner[1] as f64];
+            own.map(|(_, Bar { ends })| Bar { ends: ends.map(moved) }).collect::<Vec<_>>()
         };
-        let own = found
-            .into_iter()
-            .filter(|([x, y], _)| columns.contains(&(x + corner[0])) && rows.contains(&(y + corner[1])));
-        let moved = |end: [f64; 2]| [end[0] + corner[0] as f64, end[1] + corner[1] as f64];
-        own.map(|(_, Bar { ends })| Bar { ends: ends.map(moved) }).collect::<Vec<_>>()
+        // Clearances that are kept know what lies beyond the window.
+        if clearance.whole().is_some() { find() } else { recall.narrows.or_find(|| seen(raster, &window), find) }
     })
     .concat()
+}
+
+/// What is free within a window.
+fn seen(raster: &Raster, [columns, rows]: &[Range<usize>; 2]) -> Key {
+    let start = Key::default().number(raster.resolution).with(columns.start as u64).with(rows.start as u64);
+    let places = rows.clone().flat_map(|y| columns.clone().step_by(WORD).map(move |x| (x, y)));
+    places.fold(start.with(columns.end as u64).with(rows.end as u64), |key, (x, y)| {
+        key.with(raster.free.word(y * raster.width + x) & lowest(columns.end - x))
+    })
 }
 
 /// Part of the free space.
