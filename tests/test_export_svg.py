@@ -178,6 +178,6 @@ def test_names_are_escaped_and_in_one_line(tmp_path: Path) -> None:
 def test_the_legend_counts_what_there_is(tmp_path: Path) -> None:
     root = read(once(demo(), "svg", tmp_path))
     words = [text.text for text in layer(root, "legend-text")]
-    assert {"Corridor (7)", "Rack (6)", "warehouse.pgm"} <= set(words)
+    assert {"Corridor (7)", "Rack (7)", "warehouse.pgm"} <= set(words)
     named = {text.text for text in layer(root, "name")}
     assert {"A01", "A02", "C03", "S2-03"} <= named

@@ -58,7 +58,7 @@ def test_pillars_are_circles_and_names_are_words(tmp_path: Path) -> None:
     found = shapes(once(survey, "vector-objects", tmp_path))
     circles = [shape for shape in found.values() if shape["type"] == "circle"]
     assert [(c["center"], c["radius"]) for c in circles] == [([1.0, 2.0], 0.25), ([-3.0, 0.0], 0.05)]
-    assert list(found)[-1] == "pillar_7" and len(found) == 8
+    assert list(found)[-1] == "pillar_7" and len(found) == 9
 
 
 @pytest.mark.parametrize("which", ODD)
