@@ -5,19 +5,14 @@ use crate::adjacency::Adjacency;
 use crate::arrangement::arrange;
 use crate::bands::side_by_side;
 use crate::coverage::Coverage;
-use crate::directions::find_directions;
-use crate::gradients::{Gradients, find_gradients, find_gradients_in};
+use crate::gradients::{Gradients, find_gradients_in};
 use crate::grid::Grid;
-use crate::labels::{
-    Division, Evidence, Ground, Memory, Recall, Sight, Sketch, find_confidence, find_labels_in, find_patterns,
-};
-use crate::lines::find_lines;
+use crate::labels::{Division, Ground, Memory, Recall, Sight, Sketch, find_confidence, find_labels_in, find_patterns};
 use crate::occupancy::Occupancy;
 use crate::parameters::Parameters;
-use crate::radiograms::find_radiograms;
 use crate::subdivision::Subdivision;
 use crate::sums::FaceSums;
-use crate::survey::{Given, Survey};
+use crate::survey::{Given, Structure, Survey};
 use crate::walls::find_walls;
 
 /// Maps of more pixels than this are surveyed so.
@@ -27,42 +22,22 @@ const ROWS: usize = 1024;
 
 /// As [`crate::survey`] makes it, with labels by strips; but neither gradients nor adjacency are kept. The number of
 /// edge pixels comes with it.
-pub(crate) fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> (Survey, usize) {
+pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, threads: usize) -> (Survey, usize) {
     let recall = Recall::default();
     let frame = &grid.frame;
-    let gradients = given.gradients.unwrap_or_else(|| find_gradients(grid, parameters, threads));
-    let count = gradients.pixels.len();
-    let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters, threads));
-    let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
-    let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
+    let mut structure = Structure::new(grid, parameters, &mut given, threads);
+    let count = structure.gradients.pixels.len();
     let sight = {
-        let evidence = Evidence {
-            grid,
-            gradients: &gradients,
-            directions: &directions,
-            lines: &lines,
-            parameters,
-            threads,
-            recall: &recall,
-        };
+        let evidence = structure.evidence(grid, parameters, threads, &recall);
         side_by_side(1, |side| Sight::new(side, &evidence, Ground::start(side, grid, threads, &recall)).done())
     };
     // The labels' racks need specks, and no other stage needs gradients but the coverage of edges, which takes them
     // part by part.
-    let specks = gradients.specks();
-    drop(gradients);
-    let evidence = Evidence {
-        grid,
-        gradients: &specks,
-        directions: &directions,
-        lines: &lines,
-        parameters,
-        threads,
-        recall: &recall,
-    };
+    structure.gradients = structure.gradients.specks();
+    let evidence = structure.evidence(grid, parameters, threads, &recall);
 
     let sketch = Sketch::new(&evidence, sight);
-    let arranged = || arrange(frame, &directions.angles, &lines, threads);
+    let arranged = |of: &Structure| arrange(frame, &of.directions.angles, &of.lines, threads);
     let sums = given.sums;
     let measured = |arrangement: &_| match &sums {
         Some(sums) if sums.fits(arrangement) => Occupancy::of_faces(sums),
@@ -70,7 +45,7 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads
     };
     let (labels, confidence) = {
         // What the labels ask of the faces: their middles and what they mostly are.
-        let arrangement = arranged();
+        let arrangement = arranged(&structure);
         let states = measured(&arrangement).states;
         let occupancy = Occupancy { states, ..Occupancy::default() };
         let centres = Subdivision::new(frame, arrangement, threads).centres;
@@ -80,9 +55,10 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads
         let confidence = find_confidence(&evidence, &labels);
         (labels, confidence)
     };
-    drop(specks);
+    structure.gradients = Gradients::default();
 
-    let arrangement = arranged();
+    let arrangement = arranged(&structure);
+    let Structure { gradients, directions, radiograms, lines } = structure;
     let mut coverage = Coverage::new(frame, &arrangement, &directions, &lines, parameters);
     for first in (0..frame.height).step_by(ROWS) {
         let rows = first..frame.height.min(first + ROWS);
@@ -95,7 +71,7 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads
     let survey = Survey {
         memory: Memory::default(),
         patterns: find_patterns(&directions, &labels),
-        gradients: Gradients::default(),
+        gradients,
         directions,
         radiograms,
         lines,

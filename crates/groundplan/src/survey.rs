@@ -77,29 +77,18 @@ pub struct Given {
 
 /// Surveys a grid. Total: any grid and parameters give a valid subdivision, at worst one face, and warnings.
 #[must_use]
-pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> Survey {
+pub fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, threads: usize) -> Survey {
     let frame = &grid.frame;
     let strips = parameters.labels_method == Method::Strips;
     if strips && !given.keep && frame.width * frame.height > sparing::MANY {
         return survey_sparingly(grid, parameters, given, threads);
     }
     // What the labels need of the pixels alone, and then of the lines, is made beside the other stages.
-    let recall = Recall::new(given.keep.then(|| given.memory.unwrap_or_default()));
+    let recall = Recall::new(given.keep.then(|| given.memory.take().unwrap_or_default()));
     let mut survey = side_by_side(threads, |side| {
         let ground = strips.then(|| Ground::start(side, grid, threads, &recall));
-        let gradients = given.gradients.unwrap_or_else(|| find_gradients(grid, parameters, threads));
-        let directions = given.directions.unwrap_or_else(|| find_directions(frame, &gradients, parameters, threads));
-        let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
-        let lines = given.lines.unwrap_or_else(|| find_lines(&radiograms, parameters));
-        let evidence = Evidence {
-            grid,
-            gradients: &gradients,
-            directions: &directions,
-            lines: &lines,
-            parameters,
-            threads,
-            recall: &recall,
-        };
+        let structure = Structure::new(grid, parameters, &mut given, threads);
+        let evidence = structure.evidence(grid, parameters, threads, &recall);
         let (divided, labels, confidence) = side_by_side(threads, |side| {
             let divided = side.start(|| Divided::new(&evidence, given.sums));
             let sketch = ground.map(|ground| Sketch::beside(&evidence, Sight::new(side, &evidence, ground)));
@@ -114,6 +103,7 @@ pub fn survey(grid: &Grid, parameters: &Parameters, given: Given, threads: usize
             (divided, labels, confidence)
         });
         let Divided { subdivision, occupancy, walls, .. } = divided;
+        let Structure { gradients, directions, radiograms, lines } = structure;
         let patterns = find_patterns(&directions, &labels);
         let warnings = Vec::new();
         Survey {
@@ -145,6 +135,38 @@ pub fn survey_sparingly(grid: &Grid, parameters: &Parameters, given: Given, thre
     let (mut survey, edges) = sparing::survey(grid, parameters, given, threads);
     survey.warnings = find_warnings(&survey, edges, parameters);
     survey
+}
+
+/// What lines up: the stages up to the lines.
+pub(crate) struct Structure {
+    pub gradients: Gradients,
+    pub directions: Directions,
+    pub radiograms: Vec<Radiogram>,
+    pub lines: Lines,
+}
+
+impl Structure {
+    pub fn new(grid: &Grid, parameters: &Parameters, given: &mut Given, threads: usize) -> Self {
+        let frame = &grid.frame;
+        let gradients = given.gradients.take().unwrap_or_else(|| find_gradients(grid, parameters, threads));
+        let found = || find_directions(frame, &gradients, parameters, threads);
+        let directions = given.directions.take().unwrap_or_else(found);
+        let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
+        let lines = given.lines.take().unwrap_or_else(|| find_lines(&radiograms, parameters));
+        Self { gradients, directions, radiograms, lines }
+    }
+
+    /// What labels are found from.
+    pub fn evidence<'a>(
+        &'a self,
+        grid: &'a Grid<'a>,
+        parameters: &'a Parameters,
+        threads: usize,
+        recall: &'a Recall,
+    ) -> Evidence<'a> {
+        let Self { gradients, directions, lines, .. } = self;
+        Evidence { grid, gradients, directions, lines, parameters, threads, recall }
+    }
 }
 
 /// The map as its lines divide it.

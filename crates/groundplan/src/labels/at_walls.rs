@@ -1,7 +1,7 @@
 //! Racks at walls: goods stand before a wall, and hide it but for gaps between them and what of it is beyond their ends.
 
 use super::corridors::Strip;
-use super::racks::{Crossings, DEPTH, Row, SAME, behind, without};
+use super::racks::{Crossings, Row, SAME, behind, lines_behind, without};
 use super::turned::Turned;
 use super::whole::{RIM, trimmed};
 
@@ -18,6 +18,7 @@ const TAKEN: f64 = 0.25;
 const SOLID: f64 = 0.95;
 /// Goods are looked for no nearer to it, metres.
 const BEFORE: f64 = 0.3;
+
 /// Rows between a corridor and a wall that goods hide but for gaps between them, and that is seen beyond their ends.
 pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], known: &[Row]) -> Vec<Row> {
     let crossings = Crossings::new(views, strips, extents);
@@ -35,11 +36,7 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], known: &[R
                     open = without(open, row.along[0], row.along[1]);
                 }
             }
-            let depth = |line: &usize| if side == 1 { view.offsets[*line] - own } else { own - view.offsets[*line] };
-            let mut lines: Vec<usize> =
-                (0..view.offsets.len()).filter(|n| (DEPTH.0..=DEPTH.1).contains(&depth(n))).collect();
-            lines.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
-            for line in lines {
+            for (_, line) in lines_behind(view, own, side) {
                 let far = view.offsets[line];
                 let across = [own.min(far), own.max(far)];
                 let row = |along| Row { direction: strip.direction, along, across, between: None };
@@ -66,7 +63,6 @@ fn before(row: &Row, side: usize) -> [f64; 2] {
 /// shows behind it.
 fn hides_wall(view: &Turned, line: usize, side: usize, row: &Row) -> bool {
     let columns = view.column(row.along[0])..view.column(row.along[1]) + 1;
-    let mean = |shares: Vec<f64>| shares.iter().sum::<f64>() / shares.len().max(1) as f64;
     let far = row.across[side];
     let beyond =
         |metres: [f64; 2]| if side == 1 { metres.map(|m| far + m) } else { [far - metres[1], far - metres[0]] };
@@ -77,13 +73,9 @@ fn hides_wall(view: &Turned, line: usize, side: usize, row: &Row) -> bool {
     let inside = view.some_blocked(wide.clone(), before[0], before[1]);
     let shown: Vec<bool> = wide.zip(&inside).filter(|(_, b)| **b < SHOWN).map(|(c, _)| view.touched[line][c]).collect();
     let near = if side == 1 { row.across[0] } else { row.across[1] };
-    let solid = view.some_occupied(columns.clone(), near - RIM, near + RIM).iter().filter(|share| **share > 0.0).count()
-        as f64
-        / columns.len() as f64;
-    let taken = mean(view.some_blocked(columns.clone(), before[0], before[1]));
-    taken >= TAKEN
-        && solid < SOLID
-        && mean(view.some_blocked(columns, low, high)) > UNSEEN
+    view.mean_blocked(columns.clone(), before[0], before[1]) >= TAKEN
+        && view.share_touched(columns.clone(), near - RIM, near + RIM) < SOLID
+        && view.mean_blocked(columns, low, high) > UNSEEN
         && shown.len() as f64 * view.cell >= 1.0
         && shown.iter().filter(|is| **is).count() as f64 > WALL_SHOWN * shown.len() as f64
 }

@@ -1,6 +1,7 @@
 //! Blocks: racks that are known by themselves, be there no aisle beside them: taken between two lines that are seen,
 //! with floor before both, oblong, and of a depth that others on the map have too.
 
+use super::corridors::{close, runs};
 use super::near::Near;
 use super::racks::{DEPTH, Row, apart};
 use super::turned::Turned;
@@ -60,7 +61,7 @@ struct Block {
 /// The blocks of a kind that stand in rows. Rows of racks that are known already count for their kind.
 pub fn find(views: &[Turned], known: &[Row]) -> Vec<Row> {
     let standing = |fronts: Fronts| views.iter().flat_map(|view| candidates(view, fronts)).collect();
-    let found = apart(views, standing([true, true]), Row::length);
+    let found = apart(views, standing([true, true]));
     let count = found.len();
     let others = overlapping(views, known, &found);
     let others = known.iter().zip(&others).filter(|(_, blocks)| blocks.is_empty()).map(|(row, _)| row.clone());
@@ -73,7 +74,7 @@ pub fn find(views: &[Turned], known: &[Row]) -> Vec<Row> {
     }
     // What is like one of them and stands beside it is one too, be the floor on its other side not seen.
     let leaning = [[true, false], [false, true]].into_iter().flat_map(standing).collect();
-    let mut leaning = apart(views, leaning, Row::length);
+    let mut leaning = apart(views, leaning);
     let is_like = |row: &Row, rack: &Row| beside(row, rack) && are_alike(rack, row) && is_as_long(row, rack);
     leaning.retain(|row| racks.iter().any(|rack| is_like(row, rack)));
     let met = overlapping(views, &leaning, &racks);
@@ -139,12 +140,7 @@ pub fn are_alike(one: &Row, two: &Row) -> bool {
 
 /// True when the middle of one of two rows lies in the other.
 fn overlap(views: &[Turned], one: &Row, two: &Row) -> bool {
-    let holds = |row: &Row, other: &Row| {
-        let at = [other.along, other.across].map(|ends| f64::midpoint(ends[0], ends[1]));
-        let [u, v] = views[row.direction].place(views[other.direction].to_map(at));
-        (row.along[0]..=row.along[1]).contains(&u) && (row.across[0]..=row.across[1]).contains(&v)
-    };
-    holds(one, two) || holds(two, one)
+    one.holds(views, two.middle(views)) || two.holds(views, one.middle(views))
 }
 
 /// Pairs of lines between which something stands, with floor before it.
@@ -153,7 +149,7 @@ fn candidates(view: &Turned, fronts: Fronts) -> Vec<Row> {
     let least = columns(OBLONG.0);
     let close = |touched: &Vec<bool>| {
         let mut runs = closed(touched, columns(GAP));
-        runs.retain(|[from, to]| to - from >= least);
+        runs.retain(|(from, to)| to - from >= least);
         runs
     };
     let runs: Vec<_> = view.touched.iter().map(close).collect();
@@ -163,8 +159,8 @@ fn candidates(view: &Turned, fronts: Fronts) -> Vec<Row> {
             if high - low > DEPTH.1 {
                 break;
             }
-            for &[a, b] in &runs[n] {
-                for &[c, d] in runs[m].iter().filter(|[c, d]| a.max(*c) + least <= b.min(*d)) {
+            for &(a, b) in &runs[n] {
+                for &(c, d) in runs[m].iter().filter(|(c, d)| a.max(*c) + least <= b.min(*d)) {
                     if high - low >= THINNEST {
                         found.extend(standing(view, [n, m], fronts, a.max(c)..b.min(d)));
                     }
@@ -187,7 +183,7 @@ fn standing(view: &Turned, lines: [usize; 2], fronts: Fronts, range: Range<usize
         below.iter().zip(&above).map(|(a, b)| (*a < FLOOR || !fronts[0]) && (*b < FLOOR || !fronts[1])).collect();
     let share = |flags: &[bool]| flags.iter().filter(|flag| **flag).count() as f64 / flags.len() as f64;
     let mut found = Vec::new();
-    for [s, e] in closed(&free, columns(BEFORE)) {
+    for (s, e) in closed(&free, columns(BEFORE)) {
         let piece = from + s..from + e;
         let length = piece.len() as f64 * view.cell;
         if length < OBLONG.0.max(OBLONG.1 * depth)
@@ -200,7 +196,7 @@ fn standing(view: &Turned, lines: [usize; 2], fronts: Fronts, range: Range<usize
         let width = view.size[0];
         let before = piece.start.saturating_sub(reach[1])..piece.start.saturating_sub(reach[0]);
         let after = (piece.end + reach[0]).min(width)..(piece.end + reach[1]).min(width);
-        let mut ends = [before, after].map(|beyond| mean(&view.some_blocked(beyond, across[0], across[1])));
+        let mut ends = [before, after].map(|beyond| view.mean_blocked(beyond, across[0], across[1]));
         ends.sort_by(f64::total_cmp);
         let is_open = ends[0] < ENDS[0] && (ends[1] < ENDS[0] || ends[1] > ENDS[1]);
         let along = [view.along(piece.start), view.along(piece.end)];
@@ -218,7 +214,7 @@ fn standing(view: &Turned, lines: [usize; 2], fronts: Fronts, range: Range<usize
 /// Share of a row, without its faces, that is taken.
 fn inner(view: &Turned, row: &Row) -> f64 {
     let columns = view.column(row.along[0])..view.column(row.along[1]).max(view.column(row.along[0]) + 1);
-    mean(&view.some_blocked(columns, row.across[0] + FRONT[0], row.across[1] - FRONT[0]))
+    view.mean_blocked(columns, row.across[0] + FRONT[0], row.across[1] - FRONT[0])
 }
 
 /// True where one can go through all along.
@@ -232,19 +228,9 @@ fn has_lane(view: &Turned, piece: Range<usize>, across: [f64; 2]) -> bool {
     })
 }
 
-fn mean(shares: &[f64]) -> f64 {
-    // Beyond the map nothing is known to be free.
-    if shares.is_empty() { 1.0 } else { shares.iter().sum::<f64>() / shares.len() as f64 }
-}
-
 /// Runs of what is true, closed over gaps: from, to.
-fn closed(flags: &[bool], gap: usize) -> Vec<[usize; 2]> {
-    let mut runs: Vec<[usize; 2]> = Vec::new();
-    for (n, _) in flags.iter().enumerate().filter(|(_, flag)| **flag) {
-        match runs.last_mut() {
-            Some(last) if n <= last[1] + gap => last[1] = n + 1,
-            _ => runs.push([n, n + 1]),
-        }
-    }
-    runs
+fn closed(flags: &[bool], gap: usize) -> Vec<(usize, usize)> {
+    let mut flags = flags.to_vec();
+    close(&mut flags, gap);
+    runs(&flags, true)
 }

@@ -75,9 +75,7 @@ fn is_one(views: &[Turned], strips: &[Strip], a: usize, b: usize) -> bool {
     let margin = MARGIN * (high - low);
     let [from, to] = between.map(|u| view.column(u));
     let columns = from.saturating_sub(1)..to + 1;
-    let blocked = view.some_blocked(columns.clone(), low + margin, high - margin);
-    let clutter = blocked.iter().sum::<f64>() / blocked.len().max(1) as f64;
-    clutter <= CLUTTER
+    view.mean_blocked(columns.clone(), low + margin, high - margin) <= CLUTTER
         && !view.some_closed(columns.clone(), low + margin, high - margin).contains(&true)
         && !barriers::among(view, [low, high], columns.clone()).contains(&true)
         && barriers::stops(view, [low, high], columns).is_empty()

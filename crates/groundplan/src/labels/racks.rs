@@ -28,6 +28,18 @@ impl Row {
     pub fn depth(&self) -> f64 {
         self.across[1] - self.across[0]
     }
+
+    /// Its middle in the map frame.
+    pub fn middle(&self, views: &[Turned]) -> [f64; 2] {
+        let [u, v] = [self.along, self.across].map(|ends| f64::midpoint(ends[0], ends[1]));
+        views[self.direction].to_map([u, v])
+    }
+
+    /// True when a point of the map frame lies in it.
+    pub fn holds(&self, views: &[Turned], point: [f64; 2]) -> bool {
+        let [u, v] = views[self.direction].place(point);
+        (self.along[0]..=self.along[1]).contains(&u) && (self.across[0]..=self.across[1]).contains(&v)
+    }
 }
 
 /// Two faces are this far apart, metres: less is a wall, more is a room.
@@ -61,13 +73,7 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row
             }
             let own = strip.across[side];
             // Where no corridor runs along its other side, a row's other face must have been seen.
-            let mut faces: Vec<(f64, usize)> = (0..view.offsets.len())
-                .map(|n| (view.offsets[n] - own, n))
-                .map(|(offset, n)| (if side == 1 { offset } else { -offset }, n))
-                .filter(|(depth, _)| (DEPTH.0..=DEPTH.1).contains(depth))
-                .collect();
-            faces.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (depth, line) in faces {
+            for (depth, line) in lines_behind(view, own, side) {
                 let across = if side == 1 { [own, own + depth] } else { [own - depth, own] };
                 let row = |along| Row { direction: strip.direction, along, across, between: None };
                 let is_row = |row: &Row| taken(view, row) >= TAKEN_OUTSIDE && seen(view, line, row) >= SEEN_OUTSIDE;
@@ -80,7 +86,16 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row
             }
         }
     }
-    apart(views, rows, Row::length)
+    apart(views, rows)
+}
+
+/// The lines on one side of a corridor that may be a row's other face, and how far from its own side, the nearest first.
+pub fn lines_behind(view: &Turned, own: f64, side: usize) -> Vec<(f64, usize)> {
+    let depth = |offset: f64| if side == 1 { offset - own } else { own - offset };
+    let all = view.offsets.iter().zip(0..).map(|(&offset, line)| (depth(offset), line));
+    let mut lines: Vec<_> = all.filter(|(depth, _)| (DEPTH.0..=DEPTH.1).contains(depth)).collect();
+    lines.sort_by(|a, b| a.0.total_cmp(&b.0));
+    lines
 }
 
 /// What lies between neighbouring corridors, and may be a row, be it taken or not.
@@ -187,27 +202,25 @@ pub fn are_here(rows: &[Row], corridors: &[[f64; 2]]) -> bool {
     rows.len() >= PLACE.0 && racks >= PLACE.1 * corridors.iter().map(length).sum::<f64>()
 }
 
-/// Of rows that overlap the one of most weight.
-pub fn apart(views: &[Turned], mut rows: Vec<Row>, weight: impl Fn(&Row) -> f64) -> Vec<Row> {
-    rows.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
-    let middle = |row: &Row| {
-        let [u, v] = [row.along, row.across].map(|ends| f64::midpoint(ends[0], ends[1]));
-        views[row.direction].to_map([u, v])
-    };
-    let holds = |row: &Row, point: [f64; 2]| {
-        let [u, v] = views[row.direction].place(point);
-        (row.along[0]..=row.along[1]).contains(&u) && (row.across[0]..=row.across[1]).contains(&v)
-    };
+/// Of rows that overlap the longest.
+pub fn apart(views: &[Turned], rows: Vec<Row>) -> Vec<Row> {
+    heaviest(views, rows.into_iter().map(|row| (row.length(), row)).collect())
+}
+
+/// Of rows that overlap the one of most weight; the heaviest first.
+pub fn heaviest(views: &[Turned], mut weighed: Vec<(f64, Row)>) -> Vec<Row> {
+    weighed.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut rows: Vec<Row> = weighed.into_iter().map(|(_, row)| row).collect();
     let polygons: Vec<_> = rows.iter().map(|row| views[row.direction].rectangle(row.along, row.across)).collect();
-    let middles: Vec<_> = (0..).zip(rows.iter().map(middle)).collect();
+    let middles: Vec<_> = (0..).zip(rows.iter().map(|row| row.middle(views))).collect();
     let (holding, held) = (Near::polygons(&polygons), Near::points(&middles));
     let mut kept = vec![false; rows.len()];
     for (n, row) in rows.iter().enumerate() {
         let own = middles[n].1;
         let is_kept = |other: &&u32| kept[**other as usize];
-        let within = holding.at(own).iter().filter(is_kept).any(|&other| holds(&rows[other as usize], own));
+        let within = holding.at(own).iter().filter(is_kept).any(|&other| rows[other as usize].holds(views, own));
         let around = held.within(&polygons[n]);
-        kept[n] = !within && !around.iter().filter(is_kept).any(|&other| holds(row, middles[other as usize].1));
+        kept[n] = !within && !around.iter().filter(is_kept).any(|&other| row.holds(views, middles[other as usize].1));
     }
     let mut flags = kept.into_iter();
     rows.retain(|_| flags.next().unwrap_or(false));
@@ -239,6 +252,5 @@ fn crossed(view: &Turned, other: &Turned, crossing: &Strip, extent: [f64; 2], ac
 /// Share of a row that is not free.
 fn taken(view: &Turned, row: &Row) -> f64 {
     let columns = view.column(row.along[0])..view.column(row.along[1]).max(view.column(row.along[0]) + 1);
-    let count = columns.len() as f64;
-    view.some_blocked(columns, row.across[0], row.across[1]).into_iter().sum::<f64>() / count
+    view.mean_blocked(columns, row.across[0], row.across[1])
 }

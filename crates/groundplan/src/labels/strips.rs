@@ -16,6 +16,7 @@ use super::whole;
 use super::{Division, Evidence, JunctionKind, Label, outline};
 use crate::bands::side_by_side;
 use crate::grid::{State, tidy};
+use std::collections::BTreeSet;
 
 /// So far round a rack there are no doors, metres.
 const RIM: f64 = 0.4;
@@ -115,8 +116,8 @@ fn racked(
         rectangle(&views[strip.direction], extents[n], strip.across)
     });
     // What a rack leaves of the row between two corridors leads from one to the other, and is a way too.
-    let left =
-        between.iter().filter(|row| rows.iter().any(|rack| rack.between.is_some() && rack.between == row.between));
+    let racks: BTreeSet<_> = rows.iter().filter_map(|rack| rack.between).collect();
+    let left = between.iter().filter(|row| row.between.is_some_and(|pair| racks.contains(&pair)));
     let grounds = rows.iter().chain(left).map(|row| {
         let wider = |[low, high]: [f64; 2]| [low - RIM, high + RIM];
         rectangle(&views[row.direction], wider(row.along), wider(row.across))

@@ -246,6 +246,19 @@ impl Turned {
         self.shares(What::Blocked, columns, low, high)
     }
 
+    /// The mean of [`Turned::blocked`] over a range of columns; 1 where there are none, as beyond the map nothing is known
+    /// to be free.
+    pub fn mean_blocked(&self, columns: Range<usize>, low: f64, high: f64) -> f64 {
+        let shares = self.some_blocked(columns, low, high);
+        if shares.is_empty() { 1.0 } else { shares.iter().sum::<f64>() / shares.len() as f64 }
+    }
+
+    /// Share of a range of columns in which something stands between two places across.
+    pub fn share_touched(&self, columns: Range<usize>, low: f64, high: f64) -> f64 {
+        let shares = self.some_occupied(columns, low, high);
+        shares.iter().filter(|share| **share > 0.0).count() as f64 / shares.len().max(1) as f64
+    }
+
     /// [`Turned::occupied`] of a range of columns.
     pub fn some_occupied(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
         self.shares(What::Occupied, columns, low, high)

@@ -4,7 +4,7 @@
 use super::at_walls;
 use super::blocks::{self, are_alike, beside};
 use super::corridors::Strip;
-use super::racks::{self, Crossings, Row, SHORTEST, apart};
+use super::racks::{self, Crossings, Row, SHORTEST, heaviest};
 use super::turned::Turned;
 
 /// So many times its length a row counts whose two faces are seen.
@@ -43,34 +43,40 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], rows: &[Ro
         let row = trimmed(view, row, row.across)?;
         Some(if row.between.is_some() { followed(view, &crossings, &row) } else { row })
     };
-    let mut found: Vec<Row> = known.iter().filter_map(whole).collect();
+    let found: Vec<Row> = known.iter().filter_map(whole).collect();
     let mut blocks = blocks::find(views, &found);
     let met = blocks::overlapping(views, &blocks, rows);
     for (block, met) in blocks.iter_mut().zip(met) {
         block.between = met.into_iter().find_map(|n| rows[n].between);
     }
-    // Of a block both faces are seen.
-    let weight = |row: &Row| if blocks.contains(row) { SEEN_BOTH * row.length() } else { row.length() };
-    found.extend(blocks.iter().cloned());
-    apart(views, found, weight)
+    // Of a block both faces are seen, be it known from its aisle already.
+    let met = blocks::overlapping(views, &found, &blocks);
+    let weigh = |(row, met): (Row, Vec<usize>)| {
+        let is_block = met.into_iter().any(|n| blocks[n] == row);
+        (if is_block { SEEN_BOTH } else { 1.0 } * row.length(), row)
+    };
+    let mut weighed: Vec<(f64, Row)> = found.into_iter().zip(met).map(weigh).collect();
+    weighed.extend(blocks.into_iter().map(|row| (SEEN_BOTH * row.length(), row)));
+    heaviest(views, weighed)
 }
 
 /// Rows without those that are walls for all that is seen: closed all along, nothing known between, and none of the kind
 /// across an aisle.
 fn without_walls(views: &[Turned], rows: &[Row]) -> Vec<Row> {
-    let shells: Vec<&Row> = rows.iter().filter(|row| is_shell(&views[row.direction], row)).collect();
-    let has_kin = |row: &Row| shells.iter().any(|other| beside(row, other) && are_alike(row, other));
-    rows.iter().filter(|row| !shells.contains(row) || has_kin(row)).cloned().collect()
+    let (shells, others): (Vec<_>, Vec<_>) =
+        rows.iter().zip(0..).partition(|(row, _)| is_shell(&views[row.direction], row));
+    let has_kin =
+        |(row, _): &(&Row, usize)| shells.iter().any(|(other, _)| beside(row, other) && are_alike(row, other));
+    let mut kept: Vec<_> = shells.iter().copied().filter(has_kin).chain(others).collect();
+    kept.sort_by_key(|(_, n)| *n);
+    kept.into_iter().map(|(row, _)| row.clone()).collect()
 }
 
 fn is_shell(view: &Turned, row: &Row) -> bool {
     let columns = view.column(row.along[0])..view.column(row.along[1]) + 1;
     let count = columns.len() as f64;
-    let closed = |face: f64| {
-        let occupied = view.some_occupied(columns.clone(), face - NEAR, face + NEAR);
-        occupied.iter().filter(|share| **share > 0.0).count() as f64 >= CLOSED * count
-    };
-    let blocked = |low, high| view.some_blocked(columns.clone(), low, high).iter().sum::<f64>() / count;
+    let closed = |face: f64| view.share_touched(columns.clone(), face - NEAR, face + NEAR) >= CLOSED;
+    let blocked = |low, high| view.mean_blocked(columns.clone(), low, high);
     let [low, high] = row.across;
     let inset = INSET.min(row.depth() / 4.0);
     let occupied = view.some_occupied(columns.clone(), low + inset, high - inset).iter().sum::<f64>() / count;
@@ -102,8 +108,7 @@ fn followed(view: &Turned, crossings: &Crossings, row: &Row) -> Row {
     };
     let goes_on = |from: f64| {
         let columns = view.column(from)..view.column(from + STEP).max(view.column(from) + 1);
-        let count = columns.len() as f64;
-        let mean = |low, high| view.some_blocked(columns.clone(), low, high).iter().sum::<f64>() / count;
+        let mean = |low, high| view.mean_blocked(columns.clone(), low, high);
         let [low, high] = row.across;
         let before = mean(low - FRONT[1], low - FRONT[0]).min(mean(high + FRONT[0], high + FRONT[1]));
         before < 1.0 - FLOOR && mean(low, high) > TAKEN
