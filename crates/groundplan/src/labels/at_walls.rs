@@ -1,7 +1,8 @@
 //! Racks at walls: goods stand before a wall, and hide it but for gaps between them and what of it is beyond their ends.
 
+use super::beside::{placed, wider};
 use super::corridors::Strip;
-use super::racks::{Crossings, Row, SAME, behind, lines_behind, without};
+use super::racks::{Crossings, Row, SAME, lines_behind, without};
 use super::turned::Turned;
 use super::whole::{RIM, trimmed};
 
@@ -22,16 +23,18 @@ const BEFORE: f64 = 0.3;
 /// Rows between a corridor and a wall that goods hide but for gaps between them, and that is seen beyond their ends.
 pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], known: &[Row]) -> Vec<Row> {
     let crossings = Crossings::new(views, strips, extents);
+    let rows = placed(views, known.iter().map(Row::place));
     let mut found = Vec::new();
     for (n, strip) in strips.iter().enumerate() {
         let view = &views[strip.direction];
         for side in [0, 1] {
             let own = strip.across[side];
             let mut open = vec![(extents[n][0], extents[n][1])];
-            for (m, _) in behind(strips, n, side) {
+            for (m, _) in crossings.behind(n, side) {
                 open = without(open, extents[m][0], extents[m][1]);
             }
-            for row in known.iter().filter(|row| row.direction == strip.direction) {
+            for row in rows[strip.direction].touching(extents[n], wider([own; 2], SAME)).into_iter().map(|m| &known[m])
+            {
                 if (row.across[1 - side] - own).abs() < SAME {
                     open = without(open, row.along[0], row.along[1]);
                 }

@@ -1,6 +1,7 @@
 //! Blocks: racks that are known by themselves, be there no aisle beside them: taken between two lines that are seen,
 //! with floor before both, oblong, and of a depth that others on the map have too.
 
+use super::beside::{Beside, placed, wider};
 use super::corridors::{close, runs};
 use super::near::Near;
 use super::racks::{DEPTH, Row, apart};
@@ -67,8 +68,9 @@ pub fn find(views: &[Turned], known: &[Row]) -> Vec<Row> {
     let others = known.iter().zip(&others).filter(|(_, blocks)| blocks.is_empty()).map(|(row, _)| row.clone());
     let block = |row: Row| Block { taken: inner(&views[row.direction], &row), row };
     let blocks: Vec<Block> = found.into_iter().chain(others).map(block).collect();
-    let is_one = |block: &&Block| is_racks(&kind(&blocks, block));
-    let mut racks: Vec<Row> = blocks[..count].iter().filter(is_one).map(|block| block.row.clone()).collect();
+    let kinds = Kinds::new(views, &blocks);
+    let racks = blocks[..count].iter().filter(|block| kinds.are_racks(block));
+    let mut racks: Vec<Row> = racks.map(|block| block.row.clone()).collect();
     if racks.is_empty() {
         return racks;
     }
@@ -76,7 +78,8 @@ pub fn find(views: &[Turned], known: &[Row]) -> Vec<Row> {
     let leaning = [[true, false], [false, true]].into_iter().flat_map(standing).collect();
     let mut leaning = apart(views, leaning);
     let is_like = |row: &Row, rack: &Row| beside(row, rack) && are_alike(rack, row) && is_as_long(row, rack);
-    leaning.retain(|row| racks.iter().any(|rack| is_like(row, rack)));
+    let placed = placed(views, racks.iter().map(Row::place));
+    leaning.retain(|row| standing_near(&placed, row).into_iter().any(|n| is_like(row, &racks[n])));
     let met = overlapping(views, &leaning, &racks);
     racks.extend(leaning.into_iter().zip(met).filter(|(_, racks)| racks.is_empty()).map(|(row, _)| row));
     racks
@@ -93,23 +96,50 @@ pub fn overlapping(views: &[Turned], rows: &[Row], others: &[Row]) -> Vec<Vec<us
     rows.iter().map(of).collect()
 }
 
-/// Those of its kind, itself among them.
-fn kind<'a>(blocks: &'a [Block], of: &Block) -> Vec<&'a Block> {
-    let alike = |block: &&Block| are_alike(&of.row, &block.row) && (block.taken - of.taken).abs() <= TAKEN_ALIKE;
-    blocks.iter().filter(alike).collect()
+/// Of rows by their directions and places those that may be beside another, or behind it.
+pub fn standing_near(placed: &[Beside], row: &Row) -> Vec<usize> {
+    placed[row.direction].touching(wider(row.along, AISLE), wider(row.across, AISLE))
 }
 
-/// True when there are enough of a kind, and two of them stand side by side or one behind the other.
-fn is_racks(kind: &[&Block]) -> bool {
+/// Blocks by their depths, and those of them that stand side by side or one behind the other.
+struct Kinds<'a> {
+    by_depth: Vec<&'a Block>,
+    pairs: Vec<[&'a Block; 2]>,
+}
+
+impl<'a> Kinds<'a> {
+    fn new(views: &[Turned], blocks: &'a [Block]) -> Self {
+        let placed = placed(views, blocks.iter().map(|block| block.row.place()));
+        let are_near = |[one, two]: &[&Block; 2]| beside(&one.row, &two.row) || behind(&one.row, &two.row);
+        let before = |n: usize| standing_near(&placed, &blocks[n].row).into_iter().take_while(move |m| *m < n);
+        let pairs = (0..blocks.len()).flat_map(|n| before(n).map(move |m| [&blocks[m], &blocks[n]]));
+        let mut pairs: Vec<_> = pairs.filter(are_near).collect();
+        pairs.sort_by(|a, b| a[0].row.depth().total_cmp(&b[0].row.depth()));
+        let mut by_depth: Vec<&Block> = blocks.iter().collect();
+        by_depth.sort_by(|a, b| a.row.depth().total_cmp(&b.row.depth()));
+        Self { by_depth, pairs }
+    }
+
+    /// True when there are enough of a block's kind, itself among them, and two of them stand near each other.
+    fn are_racks(&self, of: &Block) -> bool {
+        let is_alike = |block: &&Block| are_alike(&of.row, &block.row) && (block.taken - of.taken).abs() <= TAKEN_ALIKE;
+        let depth = of.row.depth();
+        let reach = 2.0 * ALIKE.0.max(ALIKE.1 * depth);
+        let first = |of: &[&Block]| of.partition_point(|block| block.row.depth() < depth - reach);
+        let ahead =
+            self.by_depth[first(&self.by_depth)..].iter().take_while(|block| block.row.depth() <= depth + reach);
+        let is_kind = ahead.copied().filter(is_alike).take(KIND).count() == KIND;
+        let first = self.pairs.partition_point(|[block, _]| block.row.depth() < depth - reach);
+        let pairs = self.pairs[first..].iter().take_while(|[block, _]| block.row.depth() <= depth + reach);
+        let mut pairs = pairs.filter(|pair| pair.iter().all(&is_alike));
+        pairs.any(|[one, two]| is_kind || is_pair(&one.row, &two.row))
+    }
+}
+
+/// True when two that stand side by side are racks, be there no third.
+fn is_pair(one: &Row, two: &Row) -> bool {
     let is_long = |row: &Row| row.length() >= LONG * row.depth();
-    let is_pair = |one: &Row, two: &Row| beside(one, two) && is_as_long(one, two) && is_long(one) && is_long(two);
-    let is_near = |n: usize| {
-        let near = |other: &Row| beside(other, &kind[n].row) || behind(other, &kind[n].row);
-        kind[..n]
-            .iter()
-            .any(|other| if kind.len() < KIND { is_pair(&other.row, &kind[n].row) } else { near(&other.row) })
-    };
-    (0..kind.len()).any(is_near)
+    beside(one, two) && is_as_long(one, two) && is_long(one) && is_long(two)
 }
 
 /// True when no more than an aisle lies between the long sides of two rows.
@@ -159,11 +189,14 @@ fn candidates(view: &Turned, fronts: Fronts) -> Vec<Row> {
             if high - low > DEPTH.1 {
                 break;
             }
+            if high - low < THINNEST {
+                continue;
+            }
             for &(a, b) in &runs[n] {
-                for &(c, d) in runs[m].iter().filter(|(c, d)| a.max(*c) + least <= b.min(*d)) {
-                    if high - low >= THINNEST {
-                        found.extend(standing(view, [n, m], fronts, a.max(c)..b.min(d)));
-                    }
+                let first = runs[m].partition_point(|(_, d)| *d < a + least);
+                let ahead = runs[m][first..].iter().take_while(|(c, _)| c + least <= b);
+                for &(c, d) in ahead.filter(|(c, d)| a.max(*c) + least <= b.min(*d)) {
+                    found.extend(standing(view, [n, m], fronts, a.max(c)..b.min(d)));
                 }
             }
         }

@@ -5,6 +5,7 @@
 //! Gaps in a side shorter than a rack's bay are the bay; longer ones are where other ways open. Of strips that overlap
 //! the one with the most wall along it is kept, and the others keep what is left of them.
 
+use super::beside::{Beside, placed, wider};
 use super::recall::{Key, Recall};
 use super::turned::{IMPASSABLE, Turned};
 use super::{Evidence, barriers, ragged};
@@ -36,6 +37,11 @@ impl Strip {
     /// Walled length, end to end, metres.
     pub fn length(&self) -> f64 {
         self.along[1] - self.along[0]
+    }
+
+    /// Its direction and its places, as [`placed`] takes them.
+    pub fn place(&self) -> (usize, [f64; 2], [f64; 2]) {
+        (self.direction, self.along, self.across)
     }
 
     /// Place across of its centre line.
@@ -120,23 +126,30 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
     });
     let (known, ragged): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     let mut strips = known.concat();
+    let mut placed = placed(views, strips.iter().map(Strip::place));
     for mut ragged in ragged {
-        ragged.retain(|way| !strips.iter().any(|strip| is_askew_in(views, way, strip)));
-        strips.extend(ragged);
+        ragged.retain(|way| !is_askew_in(views, way, &strips, &placed));
+        for way in ragged {
+            placed[way.direction].add(strips.len(), way.along, way.across);
+            strips.push(way);
+        }
     }
     strips.sort_by_key(|strip| strip.direction);
     strips
 }
 
-/// True when one strip's middle lies in another that runs nearly the same way.
-fn is_askew_in(views: &[Turned], one: &Strip, other: &Strip) -> bool {
-    let (own, its) = (&views[one.direction], &views[other.direction]);
+/// True when a strip's middle lies in one of others, by their direction and place, that runs nearly the same way.
+fn is_askew_in(views: &[Turned], one: &Strip, others: &[Strip], placed: &[Beside]) -> bool {
+    let own = &views[one.direction];
     let middle = own.to_map([f64::midpoint(one.along[0], one.along[1]), one.middle()]);
-    let [u, v] = its.place(middle);
-    one.direction != other.direction
-        && libm::sin(own.angle - its.angle).abs() < ASKEW
-        && (other.along[0]..=other.along[1]).contains(&u)
-        && (other.across[0]..=other.across[1]).contains(&v)
+    let askew = |its: &&Turned| its.direction != own.direction && libm::sin(own.angle - its.angle).abs() < ASKEW;
+    views.iter().filter(askew).any(|its| {
+        let [u, v] = its.place(middle);
+        let holds = |other: &Strip| {
+            (other.along[0]..=other.along[1]).contains(&u) && (other.across[0]..=other.across[1]).contains(&v)
+        };
+        placed[its.direction].touching([u; 2], [v; 2]).into_iter().any(|n| holds(&others[n]))
+    })
 }
 
 /// Between the lines of posts of the rows that cross a direction, metres.
@@ -228,9 +241,15 @@ impl<'a> Family<'a> {
     fn best(&self, mut candidates: Vec<Candidate>, known: &[Strip]) -> Vec<Strip> {
         candidates.sort_by(|a, b| a.strip.bays.cmp(&b.strip.bays).then(b.strip.score.total_cmp(&a.strip.score)));
         let mut kept = known.to_vec();
+        let mut placed = Beside::of(self.view);
+        let mut next = 0;
         for candidate in candidates {
+            for strip in &kept[next..] {
+                placed.add(next, strip.along, strip.across);
+                next += 1;
+            }
             let (first, last) = self.range(&candidate.strip);
-            let left = self.left(&candidate.strip, &kept);
+            let left = self.left(&candidate.strip, &kept, &placed);
             if !left.is_empty() {
                 let columns = self.columns(candidate.sides, first..last);
                 for range in left {
@@ -281,11 +300,12 @@ impl<'a> Family<'a> {
         (self.view.column(strip.along[0] + half), self.view.column(strip.along[1] - half) + 1)
     }
 
-    /// What stronger rivals leave of a strip's columns.
-    fn left(&self, strip: &Strip, kept: &[Strip]) -> Vec<Range<usize>> {
+    /// What stronger rivals, of which it is known where they lie, leave of a strip's columns.
+    fn left(&self, strip: &Strip, kept: &[Strip], placed: &Beside) -> Vec<Range<usize>> {
         let (from, to) = self.range(strip);
         let mut left = vec![(from, to)];
-        for rival in kept {
+        let near = placed.touching(wider(strip.along, self.view.cell), wider(strip.across, INNER));
+        for rival in near.into_iter().map(|n| &kept[n]) {
             let cut = self.range(rival);
             if cut.1 <= from || to <= cut.0 {
                 continue;
@@ -305,8 +325,7 @@ impl<'a> Family<'a> {
         let (below, above) = if one.middle() < two.middle() { (one, two) } else { (two, one) };
         let border = [below.across[1], above.across[0]];
         let (low, high) = (border[0].min(border[1]) - 1e-6, border[0].max(border[1]) + 1e-6);
-        let between = self.view.offsets.iter().zip(&self.sides).filter(|(o, _)| (low..=high).contains(*o));
-        let lines: Vec<&Side> = between.map(|(_, side)| side).collect();
+        let lines = &self.sides[self.view.lines(low, high)];
         let (p, q) = (self.range(one), self.range(two));
         let (from, to) = (p.0.max(q.0), p.1.min(q.1));
         let structure = (from..to).filter(|&c| lines.iter().any(|line| line.faces[c])).count();

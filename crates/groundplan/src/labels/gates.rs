@@ -2,6 +2,7 @@
 //! that lead across rows do so through their bays.
 
 use super::Evidence;
+use super::beside::{Beside, placed, wider};
 use super::corridors::Strip;
 use super::look::Look;
 use super::racks::{self, Row};
@@ -39,11 +40,13 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: 
     let mut crossed: Vec<Vec<Crossed>> = vec![Vec::new(); strips.len()];
     // Where a direction does not tell its own bays, they are as those of the others.
     let common = views.iter().find_map(|view| view.pitch);
+    let placed = placed(views, strips.iter().map(Strip::place));
+    let widest = strips.iter().map(Strip::width).fold(0.0, f64::max);
     for view in views.iter().filter(|_| common.is_some()) {
         let Some(other) = crossing(views, view.direction) else { continue };
         // The rows as they were if nothing led across them.
         let is_aisle = |n: &usize| {
-            strips[*n].direction == view.direction && !strips[*n].bays && !racks::is_within_row(&strips, *n)
+            strips[*n].direction == view.direction && !strips[*n].bays && !racks::is_within_row(&strips, &placed, *n)
         };
         let aisles: Vec<Strip> = (0..strips.len()).filter(is_aisle).map(|n| strips[n].clone()).collect();
         let extents: Vec<[f64; 2]> = aisles.iter().map(|strip| strip.along).collect();
@@ -56,14 +59,27 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: 
             let longest = aisles.iter().map(|aisle| aisle.length()).fold(f64::INFINITY, f64::min);
             let times = if view.pitch.is_some() { LONGER } else { 1.0 };
             let judged = |strip: &Strip| strip.length() < times * longest;
-            for (strip, crossed) in strips.iter().zip(&mut crossed) {
-                if strip.direction == other.direction && judged(strip) {
-                    crossed.extend(cross([view, other], &row, (&columns, &ways), strip, aisles));
+            for n in leading_across([view, other], &placed, &row, widest) {
+                if judged(&strips[n]) {
+                    crossed[n].extend(cross([view, other], &row, (&columns, &ways), &strips[n], aisles));
                 }
             }
         }
     }
     strips.into_iter().zip(crossed).flat_map(|(strip, crossed)| ways(strip, crossed)).collect()
+}
+
+/// Of strips by their directions and places those along another direction that may lead across a row; none is wider than
+/// the widest.
+fn leading_across([view, other]: [&Turned; 2], placed: &[Beside], row: &Row, widest: f64) -> Vec<usize> {
+    // So far beyond a row's ends the middle of what meets its corner may cross it, at a sine of a half or more.
+    let reach = widest + row.depth();
+    let corners = view.rectangle(wider(row.along, reach), row.across);
+    let ends = [0, 1].map(|axis| {
+        let places = corners.iter().map(|&corner| other.place(corner)[axis]);
+        places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], place| [low.min(place), high.max(place)])
+    });
+    placed[other.direction].touching(ends[0], ends[1])
 }
 
 /// A row that a strip leads across: in the strip's own places, and whether there is a way.

@@ -1,6 +1,7 @@
 //! Pieces of one way: in line, and with nothing in the way from one to the next.
 
 use super::barriers;
+use super::beside::{Beside, placed};
 use super::corridors::Strip;
 use super::turned::Turned;
 use crate::sets::Sets;
@@ -20,22 +21,25 @@ pub fn join(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
     let mut order: Vec<usize> = (0..strips.len()).collect();
     let place = |n: usize| (strips[n].direction, strips[n].across[0]);
     order.sort_by(|&a, &b| place(a).0.cmp(&place(b).0).then(place(a).1.total_cmp(&place(b).1)));
+    let mut placed = placed(views, strips.iter().map(Strip::place));
     let mut pairs = Vec::new();
     for (n, &a) in order.iter().enumerate() {
         let (direction, high) = (strips[a].direction, strips[a].across[1]);
         let beside = order[n + 1..].iter().take_while(|&&b| place(b).0 == direction && place(b).1 < high);
-        pairs.extend(beside.flat_map(|&b| [(a, b), (b, a)]).filter(|&(a, b)| is_one(views, &strips, a, b)));
+        pairs.extend(beside.flat_map(|&b| [(a, b), (b, a)]).filter(|&(a, b)| is_one(views, &strips, &placed, [a, b])));
     }
     let gap = |&(a, b): &(usize, usize)| strips[b].along[0] - strips[a].along[1];
     pairs.sort_by(|p, q| gap(p).total_cmp(&gap(q)).then(p.cmp(q)));
     let mut wholes = Sets::new(strips.len());
     for (a, b) in pairs {
         let [a, b] = [a, b].map(|n| wholes.of(n as u32) as usize);
-        if is_one(views, &strips, a, b) {
+        if is_one(views, &strips, &placed, [a, b]) {
             let across = shared(&strips[a], &strips[b]);
             let (along, score) = ([strips[a].along[0], strips[b].along[1]], strips[a].score + strips[b].score);
             let bays = strips[a].bays && strips[b].bays;
-            strips[a] = Strip { direction: strips[a].direction, along, across, score, bays };
+            let direction = strips[a].direction;
+            strips[a] = Strip { direction, along, across, score, bays };
+            placed[direction].add(a, along, across);
             wholes.join(a as u32, b as u32);
         }
     }
@@ -50,8 +54,8 @@ fn shared(one: &Strip, two: &Strip) -> [f64; 2] {
     [one.across[0].max(two.across[0]), one.across[1].min(two.across[1])]
 }
 
-/// True when the way along one strip goes on as another, the next one.
-fn is_one(views: &[Turned], strips: &[Strip], a: usize, b: usize) -> bool {
+/// True when the way along one strip goes on as another, the next one; of all it is known where they lie, or lay.
+fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], [a, b]: [usize; 2]) -> bool {
     let (one, two) = (&strips[a], &strips[b]);
     let between = [one.along[1], two.along[0]];
     let gap = between[1] - between[0];
@@ -64,11 +68,10 @@ fn is_one(views: &[Turned], strips: &[Strip], a: usize, b: usize) -> bool {
         return false;
     }
     let is_between = |other: &Strip| {
-        other.direction == one.direction
-            && other.along[0].max(between[0]) < other.along[1].min(between[1])
+        other.along[0].max(between[0]) < other.along[1].min(between[1])
             && other.across[0].max(low) < other.across[1].min(high)
     };
-    if strips.iter().any(is_between) {
+    if placed[one.direction].touching(between, [low, high]).into_iter().any(|n| is_between(&strips[n])) {
         return false;
     }
     let view = &views[one.direction];

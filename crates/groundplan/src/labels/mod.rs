@@ -3,6 +3,7 @@
 mod at_walls;
 mod barriers;
 mod bays;
+mod beside;
 mod blocks;
 mod confidence;
 mod corridors;

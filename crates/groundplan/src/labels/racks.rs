@@ -3,6 +3,7 @@
 //! A row is known by its two faces, be it half empty: it lies between neighbouring corridors of one direction, is cut
 //! where other corridors cross, and holds something.
 
+use super::beside::{Beside, placed, wider};
 use super::corridors::Strip;
 use super::near::Near;
 use super::turned::Turned;
@@ -27,6 +28,11 @@ impl Row {
 
     pub fn depth(&self) -> f64 {
         self.across[1] - self.across[0]
+    }
+
+    /// Its direction and its places, as [`placed`] takes them.
+    pub fn place(&self) -> (usize, [f64; 2], [f64; 2]) {
+        (self.direction, self.along, self.across)
     }
 
     /// Its middle in the map frame.
@@ -68,7 +74,7 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row
         for side in [0, 1] {
             // What of the side no nearer corridor has taken yet.
             let mut open = vec![(extents[n][0], extents[n][1])];
-            for (m, _) in behind(strips, n, side) {
+            for (m, _) in crossings.behind(n, side) {
                 open = without(open, extents[m][0], extents[m][1]);
             }
             let own = strip.across[side];
@@ -92,7 +98,8 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row
 /// The lines on one side of a corridor that may be a row's other face, and how far from its own side, the nearest first.
 pub fn lines_behind(view: &Turned, own: f64, side: usize) -> Vec<(f64, usize)> {
     let depth = |offset: f64| if side == 1 { offset - own } else { own - offset };
-    let all = view.offsets.iter().zip(0..).map(|(&offset, line)| (depth(offset), line));
+    let near = view.lines(own - 2.0 * DEPTH.1, own + 2.0 * DEPTH.1);
+    let all = near.map(|line| (depth(view.offsets[line]), line));
     let mut lines: Vec<_> = all.filter(|(depth, _)| (DEPTH.0..=DEPTH.1).contains(depth)).collect();
     lines.sort_by(|a, b| a.0.total_cmp(&b.0));
     lines
@@ -103,27 +110,13 @@ pub fn between(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<
     Crossings::new(views, strips, extents).between()
 }
 
-/// The corridors of its direction on one side of a corridor, no further off than a row is deep, the nearest first; each
-/// with how far.
-pub fn behind(strips: &[Strip], n: usize, side: usize) -> Vec<(usize, f64)> {
-    let own = &strips[n];
-    let gap = |m: usize| {
-        let other = &strips[m];
-        if side == 1 { other.across[0] - own.across[1] } else { own.across[0] - other.across[1] }
-    };
-    let others = (0..strips.len()).filter(|&m| m != n && strips[m].direction == own.direction);
-    let mut found: Vec<(usize, f64)> =
-        others.map(|m| (m, gap(m))).filter(|(_, gap)| *gap > -SAME && *gap <= DEPTH.1).collect();
-    found.sort_by(|a, b| a.1.total_cmp(&b.1));
-    found
-}
-
-/// What crosses rows: corridors of other directions.
+/// The corridors of a place: those of one direction lie beside rows, and those of others cross them.
 pub struct Crossings<'a> {
     views: &'a [Turned],
     strips: &'a [Strip],
     extents: &'a [[f64; 2]],
     near: Near,
+    placed: Vec<Beside>,
     /// How far along a row a crossing one may reach beyond where its other side crosses it.
     reach: f64,
 }
@@ -135,7 +128,22 @@ impl<'a> Crossings<'a> {
         let sines = views.iter().flat_map(|one| views.iter().map(|other| libm::sin(one.angle - other.angle).abs()));
         let sine = sines.filter(|sine| *sine > 0.0).fold(1.0, f64::min);
         let widest = strips.iter().map(Strip::width).fold(0.0, f64::max);
-        Self { views, strips, extents, near: Near::polygons(&polygons), reach: widest / sine }
+        let placed = placed(views, strips.iter().zip(extents).map(|(s, extent)| (s.direction, *extent, s.across)));
+        Self { views, strips, extents, near: Near::polygons(&polygons), placed, reach: widest / sine }
+    }
+
+    /// The corridors on one side of a corridor, no further off than a row is deep, the nearest first; each with how far.
+    pub fn behind(&self, n: usize, side: usize) -> Vec<(usize, f64)> {
+        let own = &self.strips[n];
+        let gap = |m: usize| {
+            let other = &self.strips[m];
+            if side == 1 { other.across[0] - own.across[1] } else { own.across[0] - other.across[1] }
+        };
+        let near = self.placed[own.direction].touching(self.extents[n], wider(own.across, 2.0 * DEPTH.1));
+        let others = near.into_iter().filter(|&m| m != n).map(|m| (m, gap(m)));
+        let mut found: Vec<(usize, f64)> = others.filter(|(_, gap)| *gap > -SAME && *gap <= DEPTH.1).collect();
+        found.sort_by(|a, b| a.1.total_cmp(&b.1));
+        found
     }
 
     /// What lies between neighbouring corridors.
@@ -144,7 +152,7 @@ impl<'a> Crossings<'a> {
         let mut rows = Vec::new();
         for (n, strip) in strips.iter().enumerate() {
             let mut open = vec![(extents[n][0], extents[n][1])];
-            for (m, depth) in behind(strips, n, 1) {
+            for (m, depth) in self.behind(n, 1) {
                 let [from, to] = extents[m];
                 let shared = open.iter().map(|(a, b)| (a.max(from), b.min(to))).filter(|(a, b)| a < b).collect();
                 open = without(open, from, to);
@@ -182,15 +190,18 @@ impl<'a> Crossings<'a> {
     }
 }
 
-/// True when a strip lies between two much longer corridors that are no further apart than the faces of a rack.
-pub fn is_within_row(strips: &[Strip], n: usize) -> bool {
+/// True when a strip lies between two much longer corridors that are no further apart than the faces of a rack; of all it
+/// is known where they lie.
+pub fn is_within_row(strips: &[Strip], placed: &[Beside], n: usize) -> bool {
     let own = &strips[n];
+    let near = placed[own.direction].touching(own.along, wider(own.across, 2.0 * DEPTH.1));
     let beside = |other: &&Strip| {
         let shared = other.along[1].min(own.along[1]) - other.along[0].max(own.along[0]);
-        other.direction == own.direction && shared > own.length() / 2.0 && other.length() > LONGER * own.length()
+        shared > own.length() / 2.0 && other.length() > LONGER * own.length()
     };
-    let below = strips.iter().filter(beside).map(|s| s.across[1]).filter(|v| *v <= own.across[0] + SAME);
-    let above = strips.iter().filter(beside).map(|s| s.across[0]).filter(|v| *v >= own.across[1] - SAME);
+    let strips = || near.iter().map(|&n| &strips[n]).filter(beside);
+    let below = strips().map(|s| s.across[1]).filter(|v| *v <= own.across[0] + SAME);
+    let above = strips().map(|s| s.across[0]).filter(|v| *v >= own.across[1] - SAME);
     above.fold(f64::INFINITY, f64::min) - below.fold(f64::NEG_INFINITY, f64::max) <= DEPTH.1
 }
 

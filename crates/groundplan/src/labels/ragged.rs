@@ -4,6 +4,7 @@
 //! within a share of its width beyond, the column speaks for a way along it, wherever in there the side may stand. A
 //! long way that nothing narrows needs no more of a side than machines or pallets in a row, with gaps between them.
 
+use super::beside::Beside;
 use super::corridors::{self, Strip, best_pieces, close};
 use super::turned::{IMPASSABLE, Shares, Turned};
 use super::{Evidence, barriers};
@@ -104,20 +105,27 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     let mut candidates: Vec<(Strip, Held)> =
         map_each(parts.len(), threads, |n| parts[n].iter().flat_map(ways).collect::<Vec<_>>()).concat();
     candidates.sort_by(|a, b| b.0.score.total_cmp(&a.0.score));
-    let mut found: Vec<Strip> = Vec::new();
+    let mut all = known.to_vec();
+    let mut placed = Beside::of(view);
+    let mut next = 0;
     for (candidate, by) in candidates {
-        let rivals: Vec<&Strip> = known.iter().chain(&found).filter(|other| is_beside(&candidate, other)).collect();
+        for strip in &all[next..] {
+            placed.add(next, strip.along, strip.across);
+            next += 1;
+        }
+        let near = placed.touching(candidate.along, candidate.across).into_iter().map(|n| &all[n]);
+        let rivals: Vec<&Strip> = near.filter(|other| is_beside(&candidate, other)).collect();
         if rivals.is_empty() {
-            found.push(candidate);
+            all.push(candidate);
             continue;
         }
         let whole = Candidate::new(view, candidate.across, bay);
         let ways = whole.ways_in(by, whole.around(&candidate), &rivals);
-        found.extend(
+        all.extend(
             ways.into_iter().filter(|way| way.along[0] < candidate.along[1] && candidate.along[0] < way.along[1]),
         );
     }
-    found
+    all.split_off(known.len())
 }
 
 /// True when two strips share so much of their width that one of them is too much.
@@ -270,8 +278,7 @@ impl<'a> Candidate<'a> {
             seen.count() as f64 / length
         };
         let faced = |[low, high]: [f64; 2]| {
-            let lines = (0..view.offsets.len()).filter(|&n| (low..=high).contains(&view.offsets[n]));
-            let lines: Vec<&Vec<bool>> = lines.map(|n| &view.covered[n]).collect();
+            let lines = &view.covered[view.lines(low, high)];
             on_map.clone().filter(|&c| lines.iter().any(|line| line[c])).count() as f64 / length
         };
         share(&columns.clear) >= if by == Held::Thin { LEAST_CLEAR_THIN } else { LEAST_CLEAR }

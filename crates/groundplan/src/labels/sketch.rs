@@ -1,6 +1,7 @@
 //! II-E before the map is divided into faces: corridors first, junctions where they meet, rows between them, and all
 //! that may be a door.
 
+use super::beside::placed;
 use super::corridors::{self, Strip};
 use super::gates;
 use super::joined;
@@ -122,6 +123,7 @@ impl Plan {
 /// A strip that leads nowhere is a niche: it goes, and what met it is judged again.
 fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeting>) {
     loop {
+        let placed = placed(views, strips.iter().map(Strip::place));
         let meetings = junctions::find(views, &strips);
         let met = junctions::of_each(&meetings, strips.len());
         let leads = |n: usize| {
@@ -137,7 +139,7 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
                 !goes_on(arm, NICHE) && !goes_on(both, NICHES)
             };
             match met.clone().count() {
-                0 | 1 if racks::is_within_row(&strips, n) => false,
+                0 | 1 if racks::is_within_row(&strips, &placed, n) => false,
                 0 if junctions::is_shut(views, &strips[n], 0) && junctions::is_shut(views, &strips[n], 1) => {
                     strips[n].length() >= SHUT * strips[n].width()
                 }

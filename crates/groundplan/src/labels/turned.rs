@@ -169,6 +169,12 @@ impl Turned {
         rows.chain(self.keys.1[first..last].iter().copied()).fold(self.keys.0.number(low).number(high), Key::key)
     }
 
+    /// The lines from one place across to another, both included.
+    pub fn lines(&self, low: f64, high: f64) -> Range<usize> {
+        let first = self.offsets.partition_point(|&offset| offset < low);
+        first..self.offsets.partition_point(|&offset| offset <= high).max(first)
+    }
+
     /// Place along and across of a point of the map frame.
     pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [cos, sin] = self.heading;

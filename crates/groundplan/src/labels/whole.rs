@@ -2,7 +2,8 @@
 //! that are shells of walls go, and blocks that no corridor runs along come.
 
 use super::at_walls;
-use super::blocks::{self, are_alike, beside};
+use super::beside::placed;
+use super::blocks::{self, are_alike, beside, standing_near};
 use super::corridors::Strip;
 use super::racks::{self, Crossings, Row, SHORTEST, heaviest};
 use super::turned::Turned;
@@ -65,8 +66,11 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], rows: &[Ro
 fn without_walls(views: &[Turned], rows: &[Row]) -> Vec<Row> {
     let (shells, others): (Vec<_>, Vec<_>) =
         rows.iter().zip(0..).partition(|(row, _)| is_shell(&views[row.direction], row));
-    let has_kin =
-        |(row, _): &(&Row, usize)| shells.iter().any(|(other, _)| beside(row, other) && are_alike(row, other));
+    let placed = placed(views, shells.iter().map(|(row, _)| row.place()));
+    let has_kin = |(row, _): &(&Row, usize)| {
+        let mut near = standing_near(&placed, row).into_iter().map(|n| shells[n].0);
+        near.any(|other| beside(row, other) && are_alike(row, other))
+    };
     let mut kept: Vec<_> = shells.iter().copied().filter(has_kin).chain(others).collect();
     kept.sort_by_key(|(_, n)| *n);
     kept.into_iter().map(|(row, _)| row.clone()).collect()
