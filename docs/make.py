@@ -42,12 +42,16 @@ def formats() -> None:
 
 
 def scores() -> None:
-    """The suites' tables into docs/accuracy.md."""
+    """The suites' tables into docs/accuracy.md, and that of the sites of another make."""
     for suite in SUITES:
         table = subprocess.run(
             [PROGRAM, "evaluate", "--suite", suite], check=True, stdout=subprocess.PIPE, text=True
         ).stdout
         _between(DOCS / "accuracy.md", suite, f"```\n{table}```")
+    others = subprocess.run(
+        [sys.executable, DOCS.parent / "bench" / "other_sites.py"], check=True, stdout=subprocess.PIPE, text=True
+    ).stdout
+    _between(DOCS / "accuracy.md", "other sites", f"```\n{others}```")
 
 
 def _between(page: Path, name: str, text: str) -> None:

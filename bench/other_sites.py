@@ -1,0 +1,72 @@
+"""Warehouses of another make than `groundplan.simulate`: bench/other_sites.py [FIRST [COUNT]].
+
+What is tuned on simulated sites may fit the simulator. These are made by other rules (`_other_plan.py`,
+`_other_map.py`): racks solid, hollow, of legs with pallets between or of shelves, full or half empty, without guards at
+their ends; a wall beside the last cross aisle or the last block; maps drawn, scanned to three values or to greys, at 3
+to 10 cm. Every measure comes from the site's seed. COUNT sites (110) are made from the seeds FIRST (0) on, surveyed
+with default parameters and scored; the table has them by kind, and then those that score least. No bar, so no exit
+code.
+"""
+
+from __future__ import annotations
+
+import statistics
+import sys
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from typing import Any
+
+from _other_map import site
+from _other_plan import Measures
+
+import groundplan
+from groundplan.evaluate import score
+
+FIGURES = ("line_recall", "junction_f1", "junction_typed_f1", "corridor_recall", "corridor_precision")
+KINDS: dict[str, Callable[[Measures], Any]] = {
+    "racks": lambda site: site.style,
+    "full": lambda site: site.fill if site.style in ("legs", "shelves") else "-",
+    "metres a pixel": lambda site: site.resolution,
+    "map": lambda site: site.look,
+    "aisles at ends": lambda site: site.ends,
+    "aisles": lambda site: site.rows,
+}
+#: Sites whose junctions score less are listed.
+LOW = 0.9
+
+Row = tuple[int, Measures, list[float]]
+
+
+def scored(seed: int) -> Row:
+    """The figures of one site."""
+    made = site(seed)
+    found = score(groundplan.survey(made.map, threads=1).to_dict(), made.truth)
+    return seed, made.measures, [float(found[name]) for name in FIGURES]
+
+
+def line(name: str, rows: list[Row]) -> str:
+    """One row of the table: the means of some sites, and the worst typed F1 among them."""
+    lines, f1, typed, recall, precision = (
+        statistics.mean(column) for column in zip(*(row[2] for row in rows), strict=True)
+    )
+    worst = min(row[2][2] for row in rows)
+    return f"{name:22}{len(rows):6}{lines:8.3f}{f1:8.3f}{typed:8.3f}{worst:8.3f}{recall:8.3f}{precision:11.3f}"
+
+
+def main() -> None:
+    """Make the sites, score them, print the table."""
+    first, count = (int(sys.argv[n]) if len(sys.argv) > n else default for n, default in ((1, 0), (2, 110)))
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
+        rows = list(pool.map(scored, range(first, first + count)))
+    print(f"{'sites':22}{'count':>6}{'lines':>8}{'F1':>8}{'typed':>8}{'worst':>8}{'recall':>8}{'precision':>11}")
+    for name, kind in KINDS.items():
+        for value in sorted({kind(row[1]) for row in rows}, key=str):
+            print(line(f"{name}: {value}", [row for row in rows if kind(row[1]) == value]))
+    print(line("all", rows))
+    low = sorted((row[2][2], row[0]) for row in rows if row[2][2] < LOW)
+    print(f"typed F1 under {LOW}: " + (", ".join(f"{typed:.2f} of seed {seed}" for typed, seed in low) or "none"))
+
+
+if __name__ == "__main__":
+    main()
