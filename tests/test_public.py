@@ -77,3 +77,9 @@ def test_a_survey_needs_no_drawing() -> None:
 def test_the_module_of_a_function_s_name_does_not_hide_the_function(name: str) -> None:
     code = f"import groundplan.{name}, groundplan; print(callable(groundplan.{name}))"
     assert run(code) == "True"
+
+
+@pytest.mark.parametrize("name", ["evaluate", "export", "figures", "maps", "roadmap", "simulate"])
+def test_a_public_module_is_imported_when_it_is_asked_for(name: str) -> None:
+    assert run(f"import groundplan; print(groundplan.{name}.__name__)") == f"groundplan.{name}"
+    assert name in dir(groundplan)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections import Counter
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -206,6 +207,23 @@ def test_what_is_wrong_is_said_by_name() -> None:
     for array in (picture.astype(np.float64), picture[0], np.zeros((0, 5), dtype=np.uint8)):
         with pytest.raises(MapError):
             groundplan.survey(array, resolution=RESOLUTION)
+
+
+def test_what_says_nothing_about_a_map_is_refused_by_name() -> None:
+    picture = ZOO["single_room"]()
+    map = groundplan.from_array(picture, RESOLUTION)
+    with pytest.raises(MapError, match="resolution says nothing about a Map"):
+        groundplan.survey(map, resolution=0.1)
+    with pytest.raises(MapError, match="mode says nothing about a Map"):
+        groundplan.survey(map, reading={"mode": "raw"})
+    with pytest.raises(MapError, match="array"):
+        groundplan.survey(picture, resolution=RESOLUTION, reading={"mode": "raw"})
+
+
+def test_a_misspelt_word_of_reading_is_told_with_the_right_one() -> None:
+    with pytest.raises(MapError, match="'unknwon'") as caught:
+        groundplan.survey(Path("hall.pgm"), client=object(), resolution=RESOLUTION, reading={"unknwon": 205})
+    assert caught.value.hint == "did you mean unknown?"
 
 
 def test_algorithm_1_as_printed_surveys_every_map() -> None:

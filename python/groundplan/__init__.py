@@ -14,6 +14,12 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from groundplan import evaluate as evaluate
+    from groundplan import export as export
+    from groundplan import figures as figures
+    from groundplan import maps as maps
+    from groundplan import roadmap as roadmap
+    from groundplan import simulate as simulate
     from groundplan._errors import FormatError, GroundplanError, MapError, ParameterError
     from groundplan._queries import Route
     from groundplan._results import (
@@ -79,6 +85,9 @@ __all__ = [
     "survey",
 ]
 
+#: Modules that are imported, too, when they are first asked for.
+_MODULES = ("evaluate", "export", "figures", "maps", "roadmap", "simulate")
+
 if not TYPE_CHECKING:  # a type checker would take any name at all for one that __getattr__ gives
 
     def __getattr__(name: str) -> object:
@@ -87,6 +96,8 @@ if not TYPE_CHECKING:  # a type checker would take any name at all for one that 
 
         if name == "__version__":
             return import_module("groundplan._core").version()
+        if name in _MODULES:
+            return import_module(f"groundplan.{name}")
         if name not in __all__:
             raise AttributeError(f"module 'groundplan' has no attribute {name!r}")
         if name == "parameters":
@@ -99,7 +110,7 @@ if not TYPE_CHECKING:  # a type checker would take any name at all for one that 
         return value
 
     def __dir__() -> list[str]:
-        return sorted({*globals(), *__all__, "__version__"})
+        return sorted({*globals(), *__all__, *_MODULES, "__version__"})
 
 
 class _Package(ModuleType):

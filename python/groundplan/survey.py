@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 import math
 import os
@@ -33,7 +34,7 @@ from groundplan._results import (
     Walls,
     record,
 )
-from groundplan._tree import LABELS, Table, from_tree, to_tree, written
+from groundplan._tree import LABELS, READING, Table, from_tree, to_tree, written
 from groundplan.maps import Map, MapWarning, from_array
 from groundplan.maps.map_server import shown
 from groundplan.parameters import named, resolve
@@ -392,6 +393,7 @@ def survey(
     GroundplanError
         ``cluster.client``; ``cluster.path``, ``cluster.version``, ``cluster.failed`` for what goes wrong on workers.
     """
+    _check_reading(map, resolution, origin, client, reading or {})
     stages = (("directions", Directions, directions), ("lines", Lines, lines))
     own = {name: taken(kind, name, value) for name, kind, value in stages if value is not None}
     if client is not None and isinstance(map, str | os.PathLike):
@@ -412,6 +414,22 @@ def survey(
 
         return _cluster.survey_site(_cluster.Site(map), client, parameters, threads, own, keep=keep)[0]
     return surveyed(map, parameters, threads, own, {}, keep=keep)
+
+
+def _check_reading(map: object, resolution: object, origin: object, client: object, reading: dict[str, Any]) -> None:
+    """Refuse what says nothing about such a map, rather than pass over it."""
+    if isinstance(map, Map):
+        given = {"resolution": resolution, "origin": origin, **reading}
+        said = [name for name, value in given.items() if value is not None]
+        if said:
+            raise MapError("map.option", f"{said[0]} says nothing about a Map", "read it anew with that")
+    elif reading and is_array(map):
+        raise MapError("map.option", "reading says nothing about an array", "groundplan.from_array takes these words")
+    strange = [name for name in reading if name not in READING]
+    if strange:
+        near = difflib.get_close_matches(strange[0], READING, 1)
+        hint = f"did you mean {near[0]}?" if near else "it takes what groundplan.read does"
+        raise MapError("map.option", f"there is no {strange[0]!r} in reading a map", hint)
 
 
 def surveyed(
