@@ -18,7 +18,10 @@ import groundplan
 from groundplan import FormatError, ParameterError, simulate
 from groundplan.evaluate import Case, suite
 from groundplan.evaluate._roads import read_route, road_scores
+from groundplan.export._places import places
 from groundplan.roadmap import RoadMap, road_map
+from groundplan.roadmap._doors import Regions
+from groundplan.roadmap._pixels import CLEAR_M
 
 
 def degree(roads: RoadMap) -> dict[str, int]:
@@ -50,6 +53,15 @@ def test_a_warehouse_has_a_node_at_each_junction_and_a_lane_between_neighbours()
         assert min(math.dist(node.at, junction["at"]) for junction in junctions) < 0.75
     # Four aisles of two lanes, two cross aisles of four and one of four with its stubs.
     assert len(roads.lanes) == 20 and networkx.is_strongly_connected(roads.to_networkx())
+
+
+def test_a_lane_s_room_is_a_region_less_what_a_lane_keeps_from_its_walls() -> None:
+    survey = plain()
+    regions = Regions(survey, places(survey), {}, None, None)
+    for place in regions.places:
+        if place.kind == "region":
+            steps = place.shape.simplify(0.075).buffer(-CLEAR_M).difference(regions.racks.buffer(CLEAR_M))
+            assert regions.space(place.label).symmetric_difference(steps).area < 0.01 * steps.area
 
 
 @pytest.mark.parametrize("case", suite("roadmaps")[:10], ids=lambda case: case.name)

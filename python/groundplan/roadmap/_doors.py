@@ -33,6 +33,8 @@ UNSURE = 0.5
 SMALL_M2 = 6.0
 #: A lane that runs through a region for longer than this is one of its lanes, metres.
 THROUGH_M = 0.3
+#: Half of what lies between two specks that block a lane as one, metres.
+SPECK_M = 0.05
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,9 @@ class Regions:
         """Where the middle of a lane may be in a region."""
         if region not in self.clear:
             shape = self.places[region].shape.simplify(0.075)  # a pixel's step is no wall
-            shape = shape.buffer(-CLEAR_M).difference(self.racks.buffer(CLEAR_M))
+            # Specks by the thousand, as a fine map has them, grow into one another before they are grown to the full.
+            shape = shape.buffer(-SPECK_M, quad_segs=4).buffer(SPECK_M - CLEAR_M)
+            shape = shape.difference(self.racks.buffer(CLEAR_M))
             shapely.prepare(shape)
             self.clear[region] = shape
         return self.clear[region]
