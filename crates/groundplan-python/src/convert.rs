@@ -160,7 +160,7 @@ pub fn lines_of(directions: &Bound<'_, PyDict>, lines: &Bound<'_, PyDict>) -> Py
 /// Gradients that lie on the grid.
 pub fn gradients_on(dict: &Bound<'_, PyDict>, frame: &Frame) -> PyResult<Gradients> {
     let made = gradients(dict)?;
-    let inside = |p: &[u32; 2]| (p[0] as usize) < frame.width && (p[1] as usize) < frame.height;
+    let inside = |p: [u32; 2]| (p[0] as usize) < frame.width && (p[1] as usize) < frame.height;
     demand(made.pixels.iter().all(inside), "the gradients have pixels outside this map")?;
     Ok(made)
 }
@@ -303,7 +303,7 @@ pub fn table_row<'py>(py: Python<'py>, row: &Parameter) -> PyResult<Bound<'py, P
 
 pub fn from_gradients(py: Python<'_>, made: Gradients) -> PyResult<Bound<'_, PyDict>> {
     Ok(Named::new(py)
-        .pairs("pixels", made.pixels)?
+        .pairs("pixels", made.pixels.iter().collect())?
         .list("angles", made.angles)?
         .list("magnitudes", made.magnitudes)?
         .done())
@@ -311,7 +311,7 @@ pub fn from_gradients(py: Python<'_>, made: Gradients) -> PyResult<Bound<'_, PyD
 
 fn gradients(dict: &Bound<'_, PyDict>) -> PyResult<Gradients> {
     let made = Gradients {
-        pixels: pairs(dict, "pixels")?,
+        pixels: pairs(dict, "pixels")?.into_iter().collect(),
         angles: list(dict, "angles")?,
         magnitudes: list(dict, "magnitudes")?,
     };

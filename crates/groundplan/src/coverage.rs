@@ -82,10 +82,9 @@ impl<'a> Coverage<'a> {
     pub fn add(&mut self, gradients: &Gradients) {
         let span = 2 * self.diagonal.ceil() as usize + 4;
         for Family { angle, heading: [cos, sin], members } in &mut self.families {
-            let all = gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes);
-            for ((pixel, &along), &magnitude) in all {
+            gradients.iter().for_each(|(pixel, along, magnitude)| {
                 if weight(f64::from(along), magnitude, *angle, self.tolerance) == 0 {
-                    continue;
+                    return;
                 }
                 let (x, y) = (f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
                 let offset = y * *cos - x * *sin;
@@ -106,7 +105,7 @@ impl<'a> Coverage<'a> {
                         }
                     }
                 }
-            }
+            });
         }
     }
 

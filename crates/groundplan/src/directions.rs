@@ -4,7 +4,7 @@ use crate::gradients::Gradients;
 use crate::grid::{Frame, angle_between, tidy, tidy_angle, undirected};
 use crate::oriented::{BINS, Oriented};
 use crate::parameters::Parameters;
-use crate::projection::{Across, FRACTIONS, Points};
+use crate::projection::{Across, FRACTIONS};
 use crate::radiograms::{UNIT, metres_per_unit};
 use crate::sharpness::{SCAN_DEG, sharpest};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -245,7 +245,7 @@ struct Aligned {
 }
 
 fn aligned(frame: &Frame, rest: &Oriented, angle: f64, threads: usize) -> Aligned {
-    let points = Points::new(&rest.along(angle, ALIGNED_DEG.to_radians()));
+    let points = rest.along(angle, ALIGNED_DEG.to_radians());
     let across = points.across(angle, 1, 1);
     let mut sums = Vec::new();
     points.sums(&across, &mut sums, threads);
@@ -284,7 +284,6 @@ fn aligned(frame: &Frame, rest: &Oriented, angle: f64, threads: usize) -> Aligne
 fn take(rest: &mut Oriented, angle: f64, lines: &Aligned, parameters: &Parameters) {
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
     let is_on_line =
-        |pixel: &[u32; 2]| lines.across.nearest(*pixel).and_then(|bin| lines.on_line.get(bin)).is_some_and(|on| *on);
-    let gone: Vec<bool> = rest.along(angle, tolerance).iter().map(is_on_line).collect();
-    rest.remove(angle, tolerance, &gone);
+        |pixel: [u32; 2]| lines.across.nearest(pixel).and_then(|bin| lines.on_line.get(bin)).is_some_and(|on| *on);
+    rest.remove(angle, tolerance, is_on_line);
 }

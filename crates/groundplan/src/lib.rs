@@ -38,6 +38,7 @@ pub mod locate;
 pub mod occupancy;
 mod oriented;
 pub mod parameters;
+pub mod pixels;
 mod projection;
 pub mod radiograms;
 pub mod route;

@@ -7,7 +7,7 @@ pub(crate) const FRACTIONS: u32 = 16;
 /// From here on a float holds whole numbers only. More than any map has bins.
 const WHOLE: f32 = 8_388_608.0;
 /// Pixels are projected so many at a time.
-const CHUNK: usize = 64;
+const CHUNK: usize = 16;
 /// So many pixels are worth a thread's while.
 pub(crate) const SHARE: usize = 1 << 16;
 
@@ -49,28 +49,31 @@ impl Across {
 }
 
 impl Points {
-    pub fn new(pixels: &[[u32; 2]]) -> Self {
-        // Neighbours fall into one bin, and would wait for each other: every fourth part in turn.
-        let quarter = pixels.len() / 4;
-        let (parts, rest) = pixels.split_at(4 * quarter);
-        let axis = |axis: usize| {
-            let middle = |pixel: &[u32; 2]| pixel[axis] as f32 + 0.5;
-            let mut values = Vec::with_capacity(pixels.len());
-            if quarter > 0 {
-                let mut parts = parts.chunks_exact(quarter);
-                let parts: [&[[u32; 2]]; 4] = std::array::from_fn(|_| parts.next().unwrap_or_default());
-                let four = parts[0].iter().zip(parts[1]).zip(parts[2]).zip(parts[3]);
-                values.extend(four.flat_map(|(((a, b), c), d)| [a, b, c, d].map(middle)));
+    /// None yet, with room for so many.
+    pub fn with_capacity(count: usize) -> Self {
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        Self { xs: Vec::with_capacity(count), ys: Vec::with_capacity(count), within: [none; 2] }
+    }
+
+    /// And some pixels more.
+    pub fn extend(&mut self, pixels: &[[u32; 2]]) {
+        let middle = |axis: usize| pixels.iter().map(move |pixel| pixel[axis] as f32 + 0.5);
+        self.xs.extend(middle(0));
+        self.ys.extend(middle(1));
+        for (axis, ends) in self.within.iter_mut().enumerate() {
+            let places = || pixels.iter().map(|pixel| pixel[axis]);
+            if let (Some(low), Some(high)) = (places().min(), places().max()) {
+                *ends = [ends[0].min(f64::from(low) + 0.5), ends[1].max(f64::from(high) + 0.5)];
             }
-            values.extend(rest.iter().map(middle));
-            values
-        };
-        let (mut low, mut high) = ([u32::MAX; 2], [0; 2]);
-        for &[x, y] in pixels {
-            (low, high) = ([low[0].min(x), low[1].min(y)], [high[0].max(x), high[1].max(y)]);
         }
-        let ends = |axis: usize| [f64::from(low[axis].min(high[axis])) + 0.5, f64::from(high[axis]) + 0.5];
-        Self { xs: axis(0), ys: axis(1), within: [ends(0), ends(1)] }
+    }
+
+    /// Those of the pixels that are wanted.
+    pub fn only(&self, wanted: impl Fn([u32; 2]) -> bool) -> Self {
+        let mut some = Self::with_capacity(0);
+        let pixels = self.xs.iter().zip(&self.ys).map(|(&x, &y)| [x as u32, y as u32]);
+        pixels.filter(|&pixel| wanted(pixel)).for_each(|pixel| some.extend(&[pixel]));
+        some
     }
 
     pub fn len(&self) -> usize {
@@ -81,7 +84,7 @@ impl Points {
     pub fn across(&self, angle: f64, per_pixel: usize, margin: usize) -> Across {
         let scale = per_pixel as f64;
         let (nx, ny) = (-libm::sin(angle) * scale, libm::cos(angle) * scale);
-        let [xs, ys] = self.within;
+        let [xs, ys] = if self.xs.is_empty() { [[0.5; 2]; 2] } else { self.within };
         let corners = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| nx * xs[i] + ny * ys[j]);
         let low = corners.into_iter().fold(f64::INFINITY, f64::min).floor() as i64 - 1 - margin as i64;
         let high = corners.into_iter().fold(f64::NEG_INFINITY, f64::max).ceil() as i64 + 2 + margin as i64;
@@ -97,13 +100,26 @@ impl Points {
     pub fn sums(&self, across: &Across, sums: &mut Vec<u64>, threads: usize) {
         sums.clear();
         sums.resize(across.count, 0);
+        let count = |sums: &mut Vec<u64>, place: u32| {
+            sums[(place / FRACTIONS) as usize] += 1 << u32::BITS | u64::from(place % FRACTIONS);
+        };
         let add = |sums: &mut Vec<u64>, from: usize, to: usize| {
-            let mut places = [0u32; CHUNK];
-            for (xs, ys) in self.xs[from..to].chunks(CHUNK).zip(self.ys[from..to].chunks(CHUNK)) {
-                across.places(xs, ys, &mut places);
-                for &place in &places[..xs.len()] {
-                    sums[(place / FRACTIONS) as usize] += 1 << u32::BITS | u64::from(place % FRACTIONS);
+            // Neighbours fall into one bin, and would wait for each other: every fourth part in turn.
+            let quarter = (to - from) / 4 / CHUNK * CHUNK;
+            let mut places = [[0u32; CHUNK]; 4];
+            for chunk in (from..from + quarter).step_by(CHUNK) {
+                for (n, places) in places.iter_mut().enumerate() {
+                    let own = chunk + n * quarter..chunk + n * quarter + CHUNK;
+                    across.places(&self.xs[own.clone()], &self.ys[own], places);
                 }
+                for n in 0..CHUNK {
+                    places.iter().for_each(|places| count(sums, places[n]));
+                }
+            }
+            let rest = from + 4 * quarter..to;
+            for (xs, ys) in self.xs[rest.clone()].chunks(CHUNK).zip(self.ys[rest].chunks(CHUNK)) {
+                across.places(xs, ys, &mut places[0]);
+                places[0][..xs.len()].iter().for_each(|&place| count(sums, place));
             }
         };
         let shares = self.len() / SHARE;

@@ -43,14 +43,14 @@ pub(crate) fn project(frame: &Frame, angle: f64, pixels: impl Iterator<Item = ([
     // Half pixels times 2^BITS to fractions of a bin, rounded; bins sit at whole pixels.
     let shift = BITS + 1 - FRACTION_BITS;
     let half = 1 << (shift - 1);
-    for (pixel, weight) in pixels {
+    pixels.for_each(|(pixel, weight)| {
         let [x, y] = centre(pixel);
         let place = (nx * x + ny * y + half) >> shift;
         let bin = (place >> FRACTION_BITS) - first;
         let part = place & ((1 << FRACTION_BITS) - 1);
         bins[bin as usize] += weight * ((1 << FRACTION_BITS) - part);
         bins[bin as usize + 1] += weight * part;
-    }
+    });
     (first, bins)
 }
 
@@ -99,9 +99,9 @@ pub fn find_radiograms(
     map_each(directions.angles.len(), threads, |direction| {
         let angle = frame.angle_to_grid(directions.angles[direction]);
         // The pixels that lie along it; those without a direction count a little too, as the posts of a rack do.
-        let all = gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes);
-        let weighed =
-            all.map(|((pixel, &along), &magnitude)| (*pixel, weight(f64::from(along), magnitude, angle, tolerance)));
+        let weighed = gradients
+            .iter()
+            .map(|(pixel, along, magnitude)| (pixel, weight(f64::from(along), magnitude, angle, tolerance)));
         let (first, bins) = project(frame, angle, weighed.filter(|(_, weight)| *weight > 0));
         let unit = metres_per_unit(frame, angle);
         // Turning by pi flips the normal, so the map frame's offsets may run the other way.

@@ -6,8 +6,8 @@ use crate::projection::{FRACTIONS, Points};
 /// fall on single bins. The bins are finer than a pixel and smoothed over more than one, so that it does not matter
 /// where between the bins a wall falls: else an angle slightly off, at which the walls happen to fall upon bins, would
 /// look sharper than the right one.
-struct Sharpness {
-    points: Points,
+struct Sharpness<'a> {
+    points: &'a Points,
     sums: Vec<u64>,
     threads: usize,
 }
@@ -17,9 +17,9 @@ const WIDEST: usize = 8;
 /// Bins are smoothed so many at a time.
 const CHUNK: usize = 128;
 
-impl Sharpness {
-    fn new(pixels: &[[u32; 2]], threads: usize) -> Self {
-        Self { points: Points::new(pixels), sums: Vec::new(), threads }
+impl<'a> Sharpness<'a> {
+    fn new(points: &'a Points, threads: usize) -> Self {
+        Self { points, sums: Vec::new(), threads }
     }
 
     /// Of few bins and smoothed little: a few short lines show among much else.
@@ -81,13 +81,14 @@ const MOVES: usize = 4;
 /// What lines up over a length of l pixels is spread over l sin(a) bins at an angle a beside its own, so sharpness falls
 /// off as 1 / a, and halved steps climb to its top.
 pub(crate) fn sharpest(
-    pixels: &[[u32; 2]],
+    pixels: &Points,
     start: f64,
     diagonal: f64,
     threads: usize,
     worth: impl Fn(f64) -> bool,
 ) -> Option<f64> {
-    let mut some = Sharpness::new(&sample(pixels), threads);
+    let sample = sample(pixels);
+    let mut some = Sharpness::new(&sample, threads);
     let mut best = scan(start, |angle| some.roughly_at(angle));
     let mut step = STEP_DEG.to_radians() / 2.0;
     best.climb(step, |angle| some.roughly_at(angle));
@@ -157,8 +158,8 @@ impl Best {
 }
 
 /// About so many of the pixels as a sample has, by where they are: what changes elsewhere changes nothing of it.
-fn sample(pixels: &[[u32; 2]]) -> Vec<[u32; 2]> {
+fn sample(pixels: &Points) -> Points {
     let share = (pixels.len() / SAMPLE + 1).ilog2();
     let hash = |[x, y]: [u32; 2]| (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77)).wrapping_mul(0xC2B2_AE3D);
-    pixels.iter().copied().filter(|&pixel| u64::from(hash(pixel)) << share >> u32::BITS == 0).collect()
+    pixels.only(|pixel| u64::from(hash(pixel)) << share >> u32::BITS == 0)
 }

@@ -73,9 +73,8 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
 /// Places of all specks along and across the view's direction, metres.
 pub fn specks_of<'a>(evidence: &'a Evidence, view: &'a Turned) -> impl Iterator<Item = [f64; 2]> + 'a {
     let frame = &evidence.grid.frame;
-    let all = evidence.gradients.pixels.iter().zip(&evidence.gradients.magnitudes);
-    let specks = all.filter(|(_, magnitude)| **magnitude <= SPECK);
-    specks.map(|(pixel, _)| view.place(frame.to_metres(pixel.map(|p| f64::from(p) + 0.5))))
+    let specks = evidence.gradients.iter().filter(|(_, _, magnitude)| *magnitude <= SPECK);
+    specks.map(|(pixel, ..)| view.place(frame.to_metres(pixel.map(|p| f64::from(p) + 0.5))))
 }
 
 /// For each line of the direction, the steps along it at which specks stand, ascending.
@@ -87,12 +86,12 @@ fn specks(evidence: &Evidence, view: &Turned) -> Vec<(f64, Vec<i32>)> {
         .collect();
     offsets.sort_by(f64::total_cmp);
     let mut places = vec![Vec::new(); offsets.len()];
-    for [u, v] in specks_of(evidence, view) {
+    specks_of(evidence, view).for_each(|[u, v]| {
         let (from, to) = (offsets.partition_point(|&o| o < v - NEAR), offsets.partition_point(|&o| o <= v + NEAR));
         for line in &mut places[from..to] {
             line.push(((u - view.start[0]) / STEP) as i32);
         }
-    }
+    });
     for line in &mut places {
         line.sort_unstable();
         line.dedup();

@@ -132,8 +132,7 @@ impl Turned {
         let near = NEAR.0.max(NEAR.1 * frame.resolution);
         let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
         let on_grid = frame.angle_to_grid(self.angle);
-        let gradients = evidence.gradients;
-        for ((pixel, &along), &magnitude) in gradients.pixels.iter().zip(&gradients.angles).zip(&gradients.magnitudes) {
+        evidence.gradients.iter().for_each(|(pixel, along, magnitude)| {
             let lies = weight(f64::from(along), magnitude, on_grid, tolerance) > 0;
             let [u, v] = self.place(frame.to_metres(pixel.map(|p| f64::from(p) + 0.5)));
             let column = self.column(u);
@@ -145,7 +144,7 @@ impl Turned {
                 self.touched[line][column] = true;
                 self.covered[line][column] |= lies;
             }
-        }
+        });
     }
 
     /// Keys of the view and of its lines.

@@ -85,9 +85,9 @@ fn lined(evidence: &Evidence, raster: &Raster, angle: f64, offsets: &[f64]) -> V
     let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
     let near = (ON_LINE.0 / evidence.grid.frame.resolution).max(ON_LINE.1);
     let mut steps: Vec<Vec<i64>> = vec![Vec::new(); offsets.len()];
-    for (pixel, &along) in evidence.gradients.pixels.iter().zip(&evidence.gradients.angles) {
+    evidence.gradients.iter().for_each(|(pixel, along, _)| {
         if angle_between(f64::from(along), angle) > tolerance {
-            continue;
+            return;
         }
         let [x, y] = pixel.map(|p| f64::from(p) + 0.5);
         let (u, v) = (x * cos + y * sin, y * cos - x * sin);
@@ -95,7 +95,7 @@ fn lined(evidence: &Evidence, raster: &Raster, angle: f64, offsets: &[f64]) -> V
         for (line, _) in offsets.iter().enumerate().skip(first).take_while(|(_, offset)| **offset <= v + near) {
             steps[line].push((u / raster.side as f64).floor() as i64);
         }
-    }
+    });
     for list in &mut steps {
         list.sort_unstable();
         list.dedup();
