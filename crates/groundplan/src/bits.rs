@@ -6,7 +6,7 @@ use std::ops::Range;
 pub const WORD: usize = 64;
 
 /// A set of pixels.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Bits(Vec<u64>);
 
 impl Bits {
@@ -45,6 +45,29 @@ impl Bits {
         for at in pixels.clone().step_by(WORD) {
             self.add(at, lowest(pixels.end - at));
         }
+    }
+
+    /// How many of some pixels are in the set.
+    pub fn count(&self, pixels: Range<usize>) -> usize {
+        let ones = |at: usize| (self.word(at) & lowest(pixels.end - at)).count_ones() as usize;
+        pixels.clone().step_by(WORD).map(ones).sum()
+    }
+
+    /// The words that the set is kept in.
+    pub fn words(&self) -> &[u64] {
+        &self.0
+    }
+
+    /// Runs of pixels in the set among some pixels, each going on over so many that are not.
+    pub fn joined(&self, pixels: Range<usize>, gap: usize) -> Vec<Range<usize>> {
+        let mut joined: Vec<Range<usize>> = Vec::new();
+        for run in self.runs(pixels, true) {
+            match joined.last_mut() {
+                Some(last) if run.start - last.end <= gap => last.end = run.end,
+                _ => joined.push(run),
+            }
+        }
+        joined
     }
 
     /// Runs of pixels in the set, or of those that are not, among some pixels.

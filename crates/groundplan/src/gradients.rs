@@ -108,7 +108,9 @@ pub fn find_gradients_in(
             }
             part
         });
-        parts.into_iter().for_each(|part| all.extend(part.iter()));
+        for part in parts {
+            all.extend(part.iter());
+        }
     }
     all
 }

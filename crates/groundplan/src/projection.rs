@@ -113,13 +113,17 @@ impl Points {
                     across.places(&self.xs[own.clone()], &self.ys[own], places);
                 }
                 for n in 0..CHUNK {
-                    places.iter().for_each(|places| count(sums, places[n]));
+                    for places in &places {
+                        count(sums, places[n]);
+                    }
                 }
             }
             let rest = from + 4 * quarter..to;
             for (xs, ys) in self.xs[rest.clone()].chunks(CHUNK).zip(self.ys[rest].chunks(CHUNK)) {
                 across.places(xs, ys, &mut places[0]);
-                places[0][..xs.len()].iter().for_each(|&place| count(sums, place));
+                for &place in &places[0][..xs.len()] {
+                    count(sums, place);
+                }
             }
         };
         let shares = self.len() / SHARE;

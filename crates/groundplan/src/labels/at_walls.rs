@@ -74,7 +74,8 @@ fn hides_wall(view: &Turned, line: usize, side: usize, row: &Row) -> bool {
     let ends = (ENDS / view.cell) as usize;
     let wide = columns.start.saturating_sub(ends)..(columns.end + ends).min(view.size[0]);
     let inside = view.some_blocked(wide.clone(), before[0], before[1]);
-    let shown: Vec<bool> = wide.zip(&inside).filter(|(_, b)| **b < SHOWN).map(|(c, _)| view.touched[line][c]).collect();
+    let shown: Vec<bool> =
+        wide.zip(&inside).filter(|(_, b)| **b < SHOWN).map(|(c, _)| view.touched[line].get(c)).collect();
     let near = if side == 1 { row.across[0] } else { row.across[1] };
     view.mean_blocked(columns.clone(), before[0], before[1]) >= TAKEN
         && view.share_touched(columns.clone(), near - RIM, near + RIM) < SOLID

@@ -6,6 +6,7 @@ use super::corridors::{close, runs};
 use super::near::Near;
 use super::racks::{DEPTH, Row, apart};
 use super::turned::Turned;
+use crate::bits::Bits;
 use std::ops::Range;
 
 /// Floor shows before a block's faces from so far to so far off, metres.
@@ -177,12 +178,12 @@ fn overlap(views: &[Turned], one: &Row, two: &Row) -> bool {
 fn candidates(view: &Turned, fronts: Fronts) -> Vec<Row> {
     let columns = |metres: f64| (metres / view.cell).round() as usize;
     let least = columns(OBLONG.0);
-    let close = |touched: &Vec<bool>| {
-        let mut runs = closed(touched, columns(GAP));
-        runs.retain(|(from, to)| to - from >= least);
+    let long = |touched: &Bits| {
+        let mut runs = touched.joined(0..view.size[0], columns(GAP));
+        runs.retain(|run| run.len() >= least);
         runs
     };
-    let runs: Vec<_> = view.touched.iter().map(close).collect();
+    let runs: Vec<Vec<Range<usize>>> = view.touched.iter().map(long).collect();
     let mut found = Vec::new();
     for (n, &low) in view.offsets.iter().enumerate() {
         for (m, &high) in view.offsets.iter().enumerate().skip(n + 1) {
@@ -192,11 +193,12 @@ fn candidates(view: &Turned, fronts: Fronts) -> Vec<Row> {
             if high - low < THINNEST {
                 continue;
             }
-            for &(a, b) in &runs[n] {
-                let first = runs[m].partition_point(|(_, d)| *d < a + least);
-                let ahead = runs[m][first..].iter().take_while(|(c, _)| c + least <= b);
-                for &(c, d) in ahead.filter(|(c, d)| a.max(*c) + least <= b.min(*d)) {
-                    found.extend(standing(view, [n, m], fronts, a.max(c)..b.min(d)));
+            for run in &runs[n] {
+                let first = runs[m].partition_point(|other| other.end < run.start + least);
+                let ahead = runs[m][first..].iter().take_while(|other| other.start + least <= run.end);
+                let shared = ahead.map(|other| run.start.max(other.start)..run.end.min(other.end));
+                for shared in shared.filter(|shared| shared.start + least <= shared.end) {
+                    found.extend(standing(view, [n, m], fronts, shared));
                 }
             }
         }
@@ -215,13 +217,15 @@ fn standing(view: &Turned, lines: [usize; 2], fronts: Fronts, range: Range<usize
     let free: Vec<bool> =
         below.iter().zip(&above).map(|(a, b)| (*a < FLOOR || !fronts[0]) && (*b < FLOOR || !fronts[1])).collect();
     let share = |flags: &[bool]| flags.iter().filter(|flag| **flag).count() as f64 / flags.len() as f64;
+    let touched =
+        |line: usize, piece: &Range<usize>| view.touched[line].count(piece.clone()) as f64 / piece.len() as f64;
     let mut found = Vec::new();
     for (s, e) in closed(&free, columns(BEFORE)) {
         let piece = from + s..from + e;
         let length = piece.len() as f64 * view.cell;
         if length < OBLONG.0.max(OBLONG.1 * depth)
             || share(&free[s..e]) < STANDS
-            || lines.iter().any(|&line| share(&view.touched[line][piece.clone()]) < SEEN)
+            || lines.iter().any(|&line| touched(line, &piece) < SEEN)
         {
             continue;
         }

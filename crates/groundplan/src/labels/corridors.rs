@@ -10,6 +10,7 @@ use super::recall::{Key, Recall};
 use super::turned::{IMPASSABLE, Turned};
 use super::{Evidence, barriers, ragged};
 use crate::bands::map_each;
+use crate::bits::Bits;
 use crate::parameters::Parameters;
 use std::ops::{AddAssign, Range};
 
@@ -279,16 +280,16 @@ impl<'a> Family<'a> {
         let closed = view.some_closed(range.clone(), within[0], within[1]);
         let beyond = beyond.map(|[low, high]| view.some_blocked(range.clone(), low, high));
         let first = range.start;
-        let holds = |n: usize, c: usize| sides[n].walls[c] || beyond[n][c - first] > BEYOND;
+        let holds = |n: usize, c: usize| sides[n].walls.get(c) || beyond[n][c - first] > BEYOND;
         let barriers = barriers::among(view, across, range.clone());
         range
             .map(|c| Column {
                 blocked: blocked[c - first],
                 closed: closed[c - first] || barriers[c - first],
-                parted: parts.iter().any(|part| part.faces[c]),
+                parted: parts.iter().any(|part| part.faces.get(c)),
                 walled: holds(0, c) && holds(1, c),
-                near: sides.iter().any(|side| side.near[c]),
-                faces: sides.map(|side| side.faces[c]),
+                near: sides.iter().any(|side| side.near.get(c)),
+                faces: sides.map(|side| side.faces.get(c)),
                 held: [0, 1].map(|n| beyond[n][c - first] > BEYOND),
             })
             .collect()
@@ -328,7 +329,7 @@ impl<'a> Family<'a> {
         let lines = &self.sides[self.view.lines(low, high)];
         let (p, q) = (self.range(one), self.range(two));
         let (from, to) = (p.0.max(q.0), p.1.min(q.1));
-        let structure = (from..to).filter(|&c| lines.iter().any(|line| line.faces[c])).count();
+        let structure = (from..to).filter(|&c| lines.iter().any(|line| line.faces.get(c))).count();
         from < to && structure as f64 >= DENSE * (to - from) as f64
     }
 
@@ -396,25 +397,21 @@ impl<'a> Family<'a> {
 /// A line as the side of a strip, column by column.
 struct Side {
     /// Structure, or the gap of an empty bay.
-    walls: Vec<bool>,
+    walls: Bits,
     /// Structure, or a gap too short for a bay.
-    near: Vec<bool>,
+    near: Bits,
     /// Structure of some length: more than posts.
-    faces: Vec<bool>,
+    faces: Bits,
 }
 
 impl Side {
     fn new(view: &Turned, line: usize, bay: f64, racked: bool) -> Self {
         let cells = |metres: f64| (metres / view.cell) as usize;
-        let joined = |from: &[Vec<bool>], gap: f64, shortest: f64| {
-            let mut flags = from[line].clone();
-            close(&mut flags, cells(gap));
-            for (from, to) in runs(&flags, true) {
-                if to - from < cells(shortest) {
-                    flags[from..to].fill(false);
-                }
-            }
-            flags
+        let joined = |from: &[Bits], gap: f64, shortest: f64| {
+            let mut joined = Bits::new(view.size[0]);
+            let runs = from[line].joined(0..view.size[0], cells(gap)).into_iter();
+            runs.filter(|run| run.len() >= cells(shortest)).for_each(|run| joined.fill(run));
+            joined
         };
         // Where bays recur, their posts are the side of the way along them.
         let posts = if racked { &view.touched } else { &view.covered };

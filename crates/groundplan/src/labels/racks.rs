@@ -241,8 +241,7 @@ pub fn heaviest(views: &[Turned], mut weighed: Vec<(f64, Row)>) -> Vec<Row> {
 /// Share of a row's length on which structure lies on one of its view's lines.
 fn seen(view: &Turned, line: usize, row: &Row) -> f64 {
     let columns = view.column(row.along[0])..view.column(row.along[1]) + 1;
-    let count = columns.len() as f64;
-    columns.filter(|&c| view.covered[line][c]).count() as f64 / count
+    view.covered[line].count(columns.clone()) as f64 / columns.len() as f64
 }
 
 /// Pieces without what lies between two places.

@@ -279,7 +279,7 @@ impl<'a> Candidate<'a> {
         };
         let faced = |[low, high]: [f64; 2]| {
             let lines = &view.covered[view.lines(low, high)];
-            on_map.clone().filter(|&c| lines.iter().any(|line| line[c])).count() as f64 / length
+            on_map.clone().filter(|&c| lines.iter().any(|line| line.get(c))).count() as f64 / length
         };
         share(&columns.clear) >= if by == Held::Thin { LEAST_CLEAR_THIN } else { LEAST_CLEAR }
             && columns.held.iter().all(|held| share(held) >= LEAST_HELD)

@@ -6,6 +6,7 @@
 use super::corridors::Strip;
 use super::ragged::Held;
 use super::rooms::Bar;
+use crate::bits::Bits;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -37,9 +38,8 @@ impl Key {
         chunks.fold(self.with(bytes.len() as u64), |key, chunk| key.with(word(chunk))).with(rest)
     }
 
-    pub fn flags(self, flags: &[bool]) -> Self {
-        let word = |flags: &[bool]| flags.iter().fold(0, |word, &flag| word << 1 | u64::from(flag));
-        flags.chunks(64).fold(self.with(flags.len() as u64), |key, flags| key.with(word(flags)))
+    pub fn bits(self, bits: &Bits) -> Self {
+        bits.words().iter().fold(self.with(bits.words().len() as u64), |key, &word| key.with(word))
     }
 }
 
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn what_was_found_before_is_not_looked_for() {
-        let key = || Key::default().number(0.5).flags(&[true, false]);
+        let key = || Key::default().number(0.5).with(1);
         let first = Recall::new(Some(Memory::default()));
         assert_eq!(first.strips.or_find(key, Vec::new), []);
         let second = Recall::new(Some(first.memory()));
@@ -143,8 +143,12 @@ mod tests {
             other[n] += 16;
             keys.push(Key::default().bytes(&other));
         }
-        let flags = |n: usize| (0..130).map(|m| m == n).collect::<Vec<_>>();
-        keys.extend((0..130).map(|n| Key::default().flags(&flags(n))));
+        let only = |n: usize| {
+            let mut bits = Bits::new(130);
+            bits.insert(n);
+            bits
+        };
+        keys.extend((0..130).map(|n| Key::default().bits(&only(n))));
         let count = keys.len();
         keys.sort_unstable();
         keys.dedup();

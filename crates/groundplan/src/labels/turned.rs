@@ -5,6 +5,7 @@ use super::Evidence;
 use super::look::Look;
 use super::recall::Key;
 use super::sums::{Cells, Rows, Told, What};
+use crate::bits::Bits;
 use crate::radiograms::weight;
 use std::ops::Range;
 
@@ -44,9 +45,9 @@ pub struct Turned {
     /// Offsets of the direction's lines, ascending.
     pub offsets: Vec<f64>,
     /// For each of those lines, whether structure lies on it in each column.
-    pub covered: Vec<Vec<bool>>,
+    pub covered: Vec<Bits>,
     /// The same for what only touches it: posts, and the ends of what lies across.
-    pub touched: Vec<Vec<bool>>,
+    pub touched: Vec<Bits>,
     /// What is told of each row of cells.
     pub rows: Vec<Told>,
     /// Keys of the view without its rows and lines, and of its lines.
@@ -127,7 +128,7 @@ impl Turned {
             .map(|n| lines.offsets[n])
             .collect();
         self.offsets.sort_by(f64::total_cmp);
-        self.covered = vec![vec![false; self.size[0]]; self.offsets.len()];
+        self.covered = vec![Bits::new(self.size[0]); self.offsets.len()];
         self.touched = self.covered.clone();
         let near = NEAR.0.max(NEAR.1 * frame.resolution);
         let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
@@ -141,8 +142,10 @@ impl Turned {
                 if offset > v + near {
                     break;
                 }
-                self.touched[line][column] = true;
-                self.covered[line][column] |= lies;
+                self.touched[line].insert(column);
+                if lies {
+                    self.covered[line].insert(column);
+                }
             }
         });
     }
@@ -152,8 +155,8 @@ impl Turned {
         let pitch = self.pitch.map_or(Key::default(), |pitch| Key::default().number(pitch));
         let numbers = [self.angle, self.cell, self.start[0], self.start[1]];
         let lines = self.offsets.iter().zip(&self.covered).zip(&self.touched);
-        let key = |((offset, covered), touched): ((&f64, &Vec<bool>), &Vec<bool>)| {
-            Key::default().number(*offset).flags(covered).flags(touched)
+        let key = |((offset, covered), touched): ((&f64, &Bits), &Bits)| {
+            Key::default().number(*offset).bits(covered).bits(touched)
         };
         (numbers.into_iter().fold(pitch.with(self.direction as u64), Key::number), lines.map(key).collect())
     }
