@@ -1,109 +1,12 @@
-//! II-C: lines -> half-edges, for any number of directions.
-//!
-//! Lines live on a lattice: whole-number coefficients, so that every question (which side, which comes first, do three
-//! meet in one point) has an exact answer, and no input is degenerate. Floats are asked first and trusted only where
-//! they are far from a tie. Lines of one direction are parallel, so they cross any other line in the order of their
-//! offsets: nothing is sorted that comes sorted, and the cost grows with what is made.
+//! From lattice lines to vertices and the edges along each line; lines through one point share one vertex.
 
+use super::lattice::{End, LatticeLine, Point, TIE_PIXELS, around, clip};
+use super::{Arrangement, NONE};
 use crate::bands::each;
-use crate::grid::Frame;
-use crate::lines::Lines;
 use std::cmp::Ordering;
 
-/// Bits after the point of the lattice.
-const BITS: u32 = 26;
-/// Floats closer than this many pixels are asked again exactly.
-const TIE_PIXELS: f64 = 1e-6;
 /// So many crossings are worth a thread's while.
 const SHARE: usize = 1 << 14;
-/// No id: a border edge's line, the outside's face.
-pub const NONE: u32 = u32::MAX;
-
-/// A line `a x + b y = c` over the grid in pixels; (a, b) is the direction's normal, all times 2^26.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LatticeLine {
-    /// Coefficient of x.
-    pub a: i64,
-    /// Coefficient of y.
-    pub b: i64,
-    /// Offset along the normal.
-    pub c: i64,
-}
-
-/// A point as fractions over one denominator, in pixels.
-#[derive(Clone, Copy, Debug)]
-struct Point {
-    x: i128,
-    y: i128,
-    over: i128,
-}
-
-impl Point {
-    fn new(x: i128, y: i128, over: i128) -> Self {
-        if over < 0 { Self { x: -x, y: -y, over: -over } } else { Self { x, y, over } }
-    }
-
-    fn to_floats(self) -> [f64; 2] {
-        [self.x as f64 / self.over as f64, self.y as f64 / self.over as f64]
-    }
-
-    /// Rows of pixels whose centres lie below: ceil(y - 1/2).
-    fn rows_below(self, y: f64, height: usize) -> u32 {
-        let whole = (y + 0.5) as i64;
-        let part = (y + 0.5) - whole as f64;
-        let rows = if part > TIE_PIXELS && part < 1.0 - TIE_PIXELS {
-            whole
-        } else {
-            let (n, d) = (2 * self.y - self.over, 2 * self.over);
-            -((-n).div_euclid(d)) as i64
-        };
-        rows.clamp(0, height as i64) as u32
-    }
-}
-
-/// A planar arrangement of lines within the map's rectangle, as half-edges. Half-edge 2e runs along edge e as its line
-/// does, 2e + 1 is its twin; the edges of the border run counter-clockwise and come last.
-#[derive(Clone, Debug, Default)]
-pub struct Arrangement {
-    /// The lines on the lattice, as given.
-    pub lines: Vec<LatticeLine>,
-    /// Vertices in pixels.
-    pub vertices: Vec<[f64; 2]>,
-    /// Rows of pixels with their centres below each vertex.
-    pub rows_below: Vec<u32>,
-    /// First and last vertex of each edge.
-    pub edges: Vec<[u32; 2]>,
-    /// Line of each edge, [`NONE`] on the border.
-    pub edge_lines: Vec<u32>,
-    /// Edges of each line: a range into `edges`.
-    pub line_edges: Vec<std::ops::Range<u32>>,
-    /// Faces on the left and on the right of each edge, [`NONE`] outside.
-    pub edge_faces: Vec<[u32; 2]>,
-    /// Half-edges of the faces, counter-clockwise; face f has those from `face_offsets[f]` to `face_offsets[f + 1]`.
-    pub face_halves: Vec<u32>,
-    /// Where each face's half-edges start; one more than there are faces.
-    pub face_offsets: Vec<u32>,
-}
-
-/// Arranges the lines; those that do not cross the map's interior get no edges.
-#[must_use]
-pub fn arrange(frame: &Frame, angles: &[f64], lines: &Lines, threads: usize) -> Arrangement {
-    let normals: Vec<[i64; 2]> = angles.iter().map(|&angle| normal(frame.angle_to_grid(angle))).collect();
-    let scale = (1u64 << BITS) as f64;
-    let lattice = |(&direction, &offset): (&u32, &f64)| {
-        let [a, b] = normals[direction as usize];
-        let c = frame.offset_to_grid(angles[direction as usize], offset) * scale;
-        LatticeLine { a, b, c: c.round() as i64 }
-    };
-    let lattice: Vec<LatticeLine> = lines.directions.iter().zip(&lines.offsets).map(lattice).collect();
-    Builder::new(frame.width as i64, frame.height as i64, lattice).build(threads)
-}
-
-/// Normal of a direction on the lattice. The y part is never negative, nor are both zero.
-fn normal(angle: f64) -> [i64; 2] {
-    let scale = (1u64 << BITS) as f64;
-    [(-libm::sin(angle) * scale).round() as i64, (libm::cos(angle) * scale).round() as i64]
-}
 
 /// Lines of one normal, in the order of their offsets.
 struct Family {
@@ -123,9 +26,9 @@ struct Run {
     vertex: u32,
 }
 
-struct Builder {
-    width: i64,
-    height: i64,
+pub struct Builder {
+    /// Of the map, pixels.
+    size: [i64; 2],
     lines: Vec<LatticeLine>,
     families: Vec<Family>,
     /// Ends of each line on the map's border, in the order it runs; none when it misses the interior.
@@ -136,15 +39,8 @@ struct Builder {
     same: Vec<u32>,
 }
 
-/// Where a line meets the border: side (0 bottom, 1 right, 2 top, 3 left) and the point.
-#[derive(Clone, Copy, Debug)]
-struct End {
-    side: u8,
-    point: Point,
-}
-
 impl Builder {
-    fn new(width: i64, height: i64, lines: Vec<LatticeLine>) -> Self {
+    pub fn new(size: [i64; 2], lines: Vec<LatticeLine>) -> Self {
         let mut order: Vec<u32> = (0..lines.len() as u32).collect();
         let key = |&n: &u32| {
             let line = lines[n as usize];
@@ -164,8 +60,7 @@ impl Builder {
             }
         }
         let mut builder = Self {
-            width,
-            height,
+            size,
             lines,
             families,
             ends: Vec::new(),
@@ -178,7 +73,7 @@ impl Builder {
         for f in 0..builder.families.len() {
             let members = std::mem::take(&mut builder.families[f].members);
             for &n in &members {
-                builder.ends[n as usize] = builder.clip(builder.lines[n as usize]);
+                builder.ends[n as usize] = clip(builder.lines[n as usize], size);
             }
             let kept: Vec<u32> = members.into_iter().filter(|&n| builder.ends[n as usize].is_some()).collect();
             builder.families[f].offsets = kept.iter().map(|&n| builder.lines[n as usize].c).collect();
@@ -187,47 +82,10 @@ impl Builder {
         builder
     }
 
-    /// The ends of the line's piece within the map, unless it misses the interior. It runs with growing x, or with
-    /// falling y when it is vertical: along (b, -a), as all lines do.
-    fn clip(&self, line: LatticeLine) -> Option<[End; 2]> {
-        let LatticeLine { a, b, c } = line;
-        let (a, b, c) = (i128::from(a), i128::from(b), i128::from(c));
-        let (width, height) = (i128::from(self.width), i128::from(self.height));
-        let at_x = |x: i128, side: u8| End { side, point: Point::new(x * b, c - a * x, b) };
-        let at_y = |y: i128, side: u8| End { side, point: Point::new(c - b * y, y * a, a) };
-        if a == 0 {
-            let inside = 0 < c * b.signum() && c.abs() < height * b.abs();
-            return inside.then(|| [at_x(0, 3), at_x(width, 1)]);
-        }
-        let rising = a < 0;
-        if b == 0 {
-            let inside = 0 < c * a.signum() && c.abs() < width * a.abs();
-            let (low, high) = (at_y(0, 0), at_y(height, 2));
-            return inside.then_some(if rising { [low, high] } else { [high, low] });
-        }
-        let (enter_y, leave_y) = if rising { (at_y(0, 0), at_y(height, 2)) } else { (at_y(height, 2), at_y(0, 0)) };
-        // A corner belongs to the side that starts there, going round counter-clockwise.
-        let x_cmp = |end: &End, x: i128| end.point.x.cmp(&(x * end.point.over));
-        let by_left_side = match x_cmp(&enter_y, 0) {
-            Ordering::Less => true,
-            Ordering::Equal => !rising,
-            Ordering::Greater => false,
-        };
-        let by_right_side = match x_cmp(&leave_y, width) {
-            Ordering::Greater => true,
-            Ordering::Equal => !rising,
-            Ordering::Less => false,
-        };
-        let enter = if by_left_side { at_x(0, 3) } else { enter_y };
-        let leave = if by_right_side { at_x(width, 1) } else { leave_y };
-        let (p, q) = (enter.point, leave.point);
-        (p.x * q.over < q.x * p.over).then_some([enter, leave])
-    }
-
     fn add_vertex(&mut self, point: Point) -> u32 {
         let floats = point.to_floats();
         self.vertices.push(floats);
-        self.rows_below.push(point.rows_below(floats[1], self.height as usize));
+        self.rows_below.push(point.rows_below(floats[1], self.size[1] as usize));
         self.vertices.len() as u32 - 1
     }
 
@@ -265,11 +123,24 @@ impl Builder {
         Run { first: first as u32, count: last.saturating_sub(first) as u32, vertex: 0 }
     }
 
-    fn build(mut self, threads: usize) -> Arrangement {
-        // Crossings: one vertex for each pair of lines, made from the earlier family's side.
+    pub fn build(mut self, threads: usize) -> Arrangement {
         let families = std::mem::take(&mut self.families);
-        let count = families.len();
-        let mut runs = vec![Run::default(); self.lines.len() * count];
+        let (runs, crossings) = self.runs(&families);
+        // Room for all of them at once: growing would copy what is many, and touch twice the memory.
+        let room = crossings + 2 * self.lines.len() + 4;
+        self.vertices.reserve_exact(room);
+        self.rows_below.reserve_exact(room);
+        self.add_crossings(&families, &runs, crossings, threads);
+        let (border, ends) = self.add_border();
+        let room = 2 * crossings + self.lines.len() + border.len();
+        let made = self.edges_along(&families, &runs, &ends, room);
+        self.assemble(made, &border)
+    }
+
+    /// For each line and family, line after line, which members it crosses; and how many crossings there are: one vertex for
+    /// each pair of lines, made from the earlier family's side.
+    fn runs(&self, families: &[Family]) -> (Vec<Run>, usize) {
+        let mut runs = vec![Run::default(); self.lines.len() * families.len()];
         let mut crossings = 0;
         for (f, family) in families.iter().enumerate() {
             for &n in &family.members {
@@ -280,18 +151,18 @@ impl Builder {
                         run.vertex = crossings;
                         crossings += run.count;
                     }
-                    runs[n as usize * count + g] = run;
+                    runs[n as usize * families.len() + g] = run;
                 }
             }
         }
-        // Room for all of them at once: growing would copy what is many, and touch twice the memory.
-        let room = crossings as usize + 2 * self.lines.len() + 4;
-        self.vertices.reserve_exact(room);
-        self.rows_below.reserve_exact(room);
-        self.add_crossings(&families, &runs, crossings as usize, threads);
-        // Ends on the border, going round; those in one place are one vertex, corners among them.
+        (runs, crossings as usize)
+    }
+
+    /// Ends on the border, going round, and the vertices at each line's ends; ends in one place are one vertex, corners
+    /// among them.
+    fn add_border(&mut self) -> (Vec<(End, u32)>, Vec<[u32; 2]>) {
         let mut border: Vec<(End, u32)> = Vec::new();
-        let (w, h) = (i128::from(self.width), i128::from(self.height));
+        let [w, h] = self.size.map(i128::from);
         let corners =
             [(0, 0, 0), (1, w, 0), (2, w, h), (3, 0, h)].map(|(side, x, y)| End { side, point: Point::new(x, y, 1) });
         for corner in corners {
@@ -312,8 +183,13 @@ impl Builder {
                 self.merge(pair[0].1, pair[1].1);
             }
         }
-        // The vertices along each line, families merged in the order the line meets them.
-        let room = 2 * crossings as usize + self.lines.len() + border.len();
+        (border, end_vertices)
+    }
+
+    /// The edges along each line: its vertices with each family, merged in the order the line meets them. There is `room`
+    /// for so many edges.
+    fn edges_along(&mut self, families: &[Family], runs: &[Run], ends: &[[u32; 2]], room: usize) -> Arrangement {
+        let count = families.len();
         let mut made = Arrangement {
             edges: Vec::with_capacity(room),
             edge_lines: Vec::with_capacity(room),
@@ -322,15 +198,12 @@ impl Builder {
         };
         let mut chain = Vec::new();
         let mut sequences: Vec<Vec<(u32, u32)>> = vec![Vec::new(); count.saturating_sub(1)];
-        let family_of = {
-            let mut of = vec![None; self.lines.len()];
-            for (f, family) in families.iter().enumerate() {
-                for (place, &n) in family.members.iter().enumerate() {
-                    of[n as usize] = Some((f, place as u32));
-                }
+        let mut family_of = vec![None; self.lines.len()];
+        for (f, family) in families.iter().enumerate() {
+            for (place, &n) in family.members.iter().enumerate() {
+                family_of[n as usize] = Some((f, place as u32));
             }
-            of
-        };
+        }
         for (n, of) in family_of.iter().enumerate() {
             let start = made.edges.len() as u32;
             if let &Some((f, place)) = of {
@@ -354,7 +227,7 @@ impl Builder {
                         sequence.reverse();
                     }
                 }
-                let [first, last] = end_vertices[n];
+                let [first, last] = ends[n];
                 chain.clear();
                 chain.push(first);
                 self.merge_sequences(n as u32, &sequences, &mut chain);
@@ -364,7 +237,7 @@ impl Builder {
             made.edge_lines.resize(made.edges.len(), n as u32);
             made.line_edges.push(start..made.edges.len() as u32);
         }
-        self.assemble(made, &border)
+        made
     }
 
     /// The vertices where lines cross, `crossings` of them: runs of an earlier family's lines with later families.
@@ -401,7 +274,7 @@ impl Builder {
                     for (&m, (vertex, rows)) in crossed.iter().zip(&mut places) {
                         let point = self.crossing(n, m);
                         *vertex = point.to_floats();
-                        *rows = point.rows_below(vertex[1], self.height as usize);
+                        *rows = point.rows_below(vertex[1], self.size[1] as usize);
                     }
                 }
             }
@@ -513,141 +386,5 @@ impl Builder {
             self.rows_below.truncate(kept as usize);
         }
         ids
-    }
-}
-
-/// Order of border points going round counter-clockwise from the lower left corner.
-fn around(p: &End, q: &End) -> Ordering {
-    p.side.cmp(&q.side).then_with(|| {
-        let axis = |e: &End| if e.side % 2 == 0 { e.point.x } else { e.point.y };
-        let along = (axis(p) * q.point.over).cmp(&(axis(q) * p.point.over));
-        if p.side < 2 { along } else { along.reverse() }
-    })
-}
-
-/// The place of every way out of a vertex, counter-clockwise: of each line forwards and backwards, and of the border's
-/// four sides as they run.
-fn rank(lines: &[LatticeLine]) -> (Vec<[u32; 2]>, [u32; 4]) {
-    let border = [[1, 0], [0, 1], [-1, 0], [0, -1]].map(|v: [i64; 2]| v.map(i128::from));
-    let ways = |line: &LatticeLine| {
-        let (x, y) = (i128::from(line.b), -i128::from(line.a));
-        [[x, y], [-x, -y]]
-    };
-    let half = |v: &[i128; 2]| u8::from(v[1] < 0 || (v[1] == 0 && v[0] < 0));
-    let turn = |v: &[i128; 2], w: &[i128; 2]| half(v).cmp(&half(w)).then_with(|| 0.cmp(&(v[0] * w[1] - v[1] * w[0])));
-    let mut all: Vec<[i128; 2]> = border.to_vec();
-    let mut last: Option<(i64, i64)> = None;
-    for line in lines {
-        if last != Some((line.a, line.b)) {
-            all.extend(ways(line));
-            last = Some((line.a, line.b));
-        }
-    }
-    all.sort_by(turn);
-    all.dedup_by(|v, w| turn(v, w) == Ordering::Equal);
-    let place = |v: &[i128; 2]| all.partition_point(|w| turn(w, v) == Ordering::Less) as u32;
-    (lines.iter().map(|line| ways(line).map(|v| place(&v))).collect(), border.map(|v| place(&v)))
-}
-
-impl Arrangement {
-    /// The other half of a half-edge.
-    #[must_use]
-    pub fn twin(half: u32) -> u32 {
-        half ^ 1
-    }
-
-    /// Vertex that a half-edge starts from.
-    #[must_use]
-    pub fn start(&self, half: u32) -> u32 {
-        self.edges[(half >> 1) as usize][(half & 1) as usize]
-    }
-
-    /// Face on the left of a half-edge, [`NONE`] outside.
-    #[must_use]
-    pub fn face(&self, half: u32) -> u32 {
-        self.edge_faces[(half >> 1) as usize][(half & 1) as usize]
-    }
-
-    /// Number of faces, without the outside.
-    #[must_use]
-    pub fn face_count(&self) -> usize {
-        self.face_offsets.len().saturating_sub(1)
-    }
-
-    /// Half-edges of a face, counter-clockwise.
-    #[must_use]
-    pub fn around(&self, face: usize) -> &[u32] {
-        &self.face_halves[self.face_offsets[face] as usize..self.face_offsets[face + 1] as usize]
-    }
-
-    /// The next half-edge around the face on the left of each. `sides` are those that the border's edges lie on.
-    fn link(&self, sides: &[u8]) -> Vec<u32> {
-        let (line_ranks, border_ranks) = rank(&self.lines);
-        let first_border = self.edges.len() - sides.len();
-        // Handed out in the order of their ranks, the ways out of every vertex come sorted.
-        let mut groups: Vec<(u32, std::ops::Range<u32>, u32)> = Vec::new();
-        for (ranks, edges) in line_ranks.iter().zip(&self.line_edges).filter(|(_, edges)| !edges.is_empty()) {
-            groups.extend([(ranks[0], edges.clone(), 0), (ranks[1], edges.clone(), 1)]);
-        }
-        for (edge, &side) in (first_border as u32..).zip(sides) {
-            let side = usize::from(side);
-            groups.push((border_ranks[side], edge..edge + 1, 0));
-            groups.push((border_ranks[(side + 2) % 4], edge..edge + 1, 1));
-        }
-        groups.sort_by_key(|group| group.0);
-
-        // Arriving against a way out, the face on the left goes on along the next way clockwise: the one before.
-        let mut next = vec![0; self.edges.len() * 2];
-        let mut ways = vec![[NONE; 2]; self.vertices.len()];
-        for (_, edges, way) in groups {
-            for edge in edges {
-                let half = 2 * edge + way;
-                let [first, last] = &mut ways[self.start(half) as usize];
-                if *first == NONE {
-                    *first = half;
-                } else {
-                    next[Self::twin(half) as usize] = *last;
-                }
-                *last = half;
-            }
-        }
-        for [first, last] in ways.into_iter().filter(|ways| ways[0] != NONE) {
-            next[Self::twin(first) as usize] = last;
-        }
-        next
-    }
-
-    /// Numbers the faces, in the order of their first half-edges; the last `border` edges are the border's.
-    fn find_faces(&mut self, next: &[u32], border: usize) {
-        let halves = next.len() as u32;
-        let first_border = halves - 2 * border as u32;
-        // Euler: all hangs together by the border.
-        self.face_offsets.reserve_exact((self.edges.len() + 2).saturating_sub(self.vertices.len()));
-        self.face_offsets.push(0);
-        self.face_halves.reserve_exact(next.len() - border);
-        self.edge_faces = vec![[0; 2]; self.edges.len()];
-        let mut seen = vec![0u64; next.len().div_ceil(64)];
-        for start in 0..halves {
-            // The outside runs along the border's twins only.
-            if start >= first_border && start & 1 == 1 {
-                self.edge_faces[(start >> 1) as usize][1] = NONE;
-                continue;
-            }
-            if seen[(start >> 6) as usize] >> (start & 63) & 1 == 1 {
-                continue;
-            }
-            let face = self.face_offsets.len() as u32 - 1;
-            let mut half = start;
-            loop {
-                seen[(half >> 6) as usize] |= 1 << (half & 63);
-                self.edge_faces[(half >> 1) as usize][(half & 1) as usize] = face;
-                self.face_halves.push(half);
-                half = next[half as usize];
-                if half == start {
-                    break;
-                }
-            }
-            self.face_offsets.push(self.face_halves.len() as u32);
-        }
     }
 }
