@@ -54,6 +54,23 @@ pub struct Band {
 struct Square {
     cells: [u64; SIDE],
     barred: [u8; SIDE],
+    /// Blocked samples of all rows, which is asked most, a byte for each column.
+    whole: u64,
+}
+
+impl Square {
+    fn new(cells: [u64; SIDE], barred: [u8; SIDE]) -> Self {
+        Self { cells, barred, whole: cells.iter().map(|row| row & LOW).sum() }
+    }
+
+    /// The sums of some rows, a byte for each column.
+    fn add_up(&self, what: What, rows: Range<usize>) -> u64 {
+        match what {
+            What::Blocked => self.cells[rows].iter().map(|row| row & LOW).sum(),
+            What::Occupied => self.cells[rows].iter().map(|row| row >> 4 & LOW).sum(),
+            What::Barred => self.barred[rows].iter().map(|row| spread(*row)).sum(),
+        }
+    }
 }
 
 /// A row of cells as a whole.
@@ -114,8 +131,14 @@ impl Cells {
                 Rows::Summed { below: row(from), above: row(to) }
             }
             Self::Squared { width, bands } => {
-                let last = Cell::new((usize::MAX, [0; SIDE]));
-                Rows::Squared { width: *width, bands, what, rows: [from, to], last }
+                let across = width.div_ceil(SIDE);
+                let layer = |n: usize| {
+                    let band = &bands[n / BAND];
+                    let rows = [from.saturating_sub(n * SIDE), (to - n * SIDE).min(SIDE)];
+                    Layer { places: &band.places[n % BAND * across..][..across], squares: &band.squares, rows }
+                };
+                let layers = (from / SIDE..to.div_ceil(SIDE)).map(layer).collect();
+                Rows::Squared { layers, what, last: Cell::new((usize::MAX, [0; SIDE])) }
             }
         }
     }
@@ -128,10 +151,8 @@ pub enum Rows<'a> {
         above: &'a [u16],
     },
     Squared {
-        width: usize,
-        bands: &'a [Band],
+        layers: Vec<Layer<'a>>,
         what: What,
-        rows: [usize; 2],
         /// The columns that were asked last, eight at once, and their sums: mostly the next to be asked is beside.
         last: Cell<(usize, [u32; SIDE])>,
     },
@@ -142,12 +163,10 @@ impl Rows<'_> {
     pub fn at(&self, column: usize) -> u32 {
         match self {
             Self::Summed { below, above } => u32::from(above[column] - below[column]),
-            Self::Squared { width, bands, what, rows, last } => {
+            Self::Squared { layers, what, last } => {
                 let n = column / SIDE;
                 if last.get().0 != n {
-                    let mut sums = [[0; SIDE]];
-                    add_up(bands, *width, n..n + 1, *what, *rows, &mut sums);
-                    last.set((n, sums[0]));
+                    last.set((n, of_square(layers, n, *what)));
                 }
                 last.get().1[column % SIDE]
             }
@@ -167,7 +186,10 @@ impl Rows<'_> {
                         .then(|| sums().position(|sum| sum >= least).map_or(from, |n| from + n))
                 })
             }
-            Self::Squared { .. } => columns.into_iter().find(|&column| self.at(column) >= least),
+            Self::Squared { layers, what, .. } => squares(&columns).find_map(|(n, own)| {
+                let sums = of_square(layers, n, *what);
+                own.clone().find(|&place| sums[place] >= least).map(|place| n * SIDE + place)
+            }),
         }
     }
 
@@ -189,7 +211,10 @@ impl Rows<'_> {
                 }
                 None
             }
-            Self::Squared { .. } => columns.rev().find(|&column| self.at(column) >= least),
+            Self::Squared { layers, what, .. } => squares(&columns).rev().find_map(|(n, own)| {
+                let sums = of_square(layers, n, *what);
+                own.clone().rfind(|&place| sums[place] >= least).map(|place| n * SIDE + place)
+            }),
         }
     }
 
@@ -200,11 +225,13 @@ impl Rows<'_> {
                 let sums = above[columns.clone()].iter().zip(&below[columns]);
                 sums.map(|(above, below)| u32::from(above - below)).collect()
             }
-            Self::Squared { width, bands, what, rows, .. } => {
+            Self::Squared { layers, what, .. } => {
                 let squares = columns.start / SIDE..columns.end.div_ceil(SIDE);
                 let before = columns.start - squares.start * SIDE;
                 let mut sums = vec![[0; SIDE]; squares.len()];
-                add_up(bands, *width, squares, *what, *rows, &mut sums);
+                for few in layers.chunks(FEW) {
+                    squares.clone().zip(&mut sums).for_each(|(n, sums)| add_up(few, n, *what, sums));
+                }
                 let mut sums = sums.into_flattened();
                 sums.truncate(before + columns.len());
                 sums.drain(..before);
@@ -214,58 +241,58 @@ impl Rows<'_> {
     }
 }
 
+/// Some rows of a row of squares.
+pub struct Layer<'a> {
+    places: &'a [u32],
+    squares: &'a [Square],
+    rows: [usize; 2],
+}
+
 /// Of so many squares above each other the sums still fit in a byte.
 const FEW: usize = 3;
 
-/// Adds to `sums`, a number for each column, what rows from one to before another hold in the columns of some squares
-/// side by side.
-fn add_up(
-    bands: &[Band],
-    width: usize,
-    columns: Range<usize>,
-    what: What,
-    [from, to]: [usize; 2],
-    sums: &mut [[u32; SIDE]],
-) {
-    let across = width.div_ceil(SIDE);
-    let squares = from / SIDE..to.div_ceil(SIDE);
-    for start in squares.clone().step_by(FEW) {
-        let few = start..squares.end.min(start + FEW);
-        let few: [Option<(&Band, usize, [usize; 2])>; FEW] = std::array::from_fn(|n| {
-            let n = few.start + n;
-            let rows = [from.saturating_sub(n * SIDE), to.saturating_sub(n * SIDE).min(SIDE)];
-            few.contains(&n).then(|| (&bands[n / BAND], n % BAND * across, rows))
-        });
-        for (column, sums) in columns.clone().zip(&mut *sums) {
-            let of = |(band, first, rows): &(&Band, usize, [usize; 2])| band.add_up(first + column, what, *rows);
-            let bytes: u64 = few.iter().flatten().map(of).sum();
-            sums.iter_mut().zip(bytes.to_le_bytes()).for_each(|(sum, byte)| *sum += u32::from(byte));
-        }
+/// Adds to `sums`, a number for each of its columns, what a few rows of squares hold in the n-th square of each.
+fn add_up(few: &[Layer], n: usize, what: What, sums: &mut [u32; SIDE]) {
+    let bytes: u64 = few.iter().map(|layer| layer.add_up(n, what)).sum();
+    if bytes != 0 {
+        sums.iter_mut().zip(bytes.to_le_bytes()).for_each(|(sum, byte)| *sum += u32::from(byte));
     }
+}
+
+/// What rows of squares hold in the columns of the n-th of each.
+fn of_square(layers: &[Layer], n: usize, what: What) -> [u32; SIDE] {
+    let mut sums = [0; SIDE];
+    layers.chunks(FEW).for_each(|few| add_up(few, n, what, &mut sums));
+    sums
+}
+
+/// The squares that some columns lie in, and which of each one's columns they are.
+fn squares(columns: &Range<usize>) -> impl DoubleEndedIterator<Item = (usize, Range<usize>)> + use<> {
+    let Range { start, end } = *columns;
+    let squares = if start < end { start / SIDE..end.div_ceil(SIDE) } else { 0..0 };
+    squares.map(move |n| (n, start.saturating_sub(n * SIDE)..(end - n * SIDE).min(SIDE)))
 }
 
 /// Rows of squares in a band.
 const BAND: usize = crate::bands::BAND_ROWS / SIDE;
 
-impl Band {
-    /// The sums over some rows of a square's columns, a byte each.
-    fn add_up(&self, square: usize, what: What, [from, to]: [usize; 2]) -> u64 {
-        let place = self.places[square];
+impl Layer<'_> {
+    /// The sums over the rows of a square's columns, a byte each.
+    fn add_up(&self, n: usize, what: What) -> u64 {
+        let (place, [from, to]) = (self.places[n], self.rows);
         if place & ALIKE != 0 {
             return u64::from(of_cell(place as u8, what)) * (to - from) as u64 * ONES;
         }
-        let Square { cells, barred } = &self.squares[place as usize];
-        // Of most squares all rows are asked: of a number that is known they are added up at once.
-        match (what, to - from == SIDE) {
-            (What::Blocked, true) => cells.iter().map(|row| row & LOW).sum(),
-            (What::Blocked, false) => cells[from..to].iter().map(|row| row & LOW).sum(),
-            (What::Occupied, true) => cells.iter().map(|row| row >> 4 & LOW).sum(),
-            (What::Occupied, false) => cells[from..to].iter().map(|row| row >> 4 & LOW).sum(),
-            (What::Barred, true) => barred.iter().map(|row| spread(*row)).sum(),
-            (What::Barred, false) => barred[from..to].iter().map(|row| spread(*row)).sum(),
+        let square = &self.squares[place as usize];
+        if matches!(what, What::Blocked) && 2 * (to - from) > SIDE {
+            // Mostly all rows are asked, and of others what is not asked is less.
+            return square.whole - square.add_up(what, 0..from) - square.add_up(what, to..SIDE);
         }
+        square.add_up(what, from..to)
     }
+}
 
+impl Band {
     fn new(width: usize, cells: &[u8]) -> Self {
         let across = width.div_ceil(SIDE);
         let mut made = Self { places: Vec::with_capacity(across * BAND), squares: Vec::new() };
@@ -276,19 +303,19 @@ impl Band {
                 let byte = |list: &[u8], row: usize, n: usize| {
                     list[row.min(list.len() / width - 1) * width + (from + n).min(width - 1)]
                 };
-                let mut square = Square { cells: [0; SIDE], barred: [0; SIDE] };
+                let (mut own, mut bars) = ([0u64; SIDE], [0u8; SIDE]);
                 for row in 0..SIDE {
                     for n in 0..SIDE {
-                        square.cells[row] |= u64::from(byte(cells, row, n)) << (8 * n);
-                        square.barred[row] |= byte(barred, row, n) << n;
+                        own[row] |= u64::from(byte(cells, row, n)) << (8 * n);
+                        bars[row] |= byte(barred, row, n) << n;
                     }
                 }
-                let first = square.cells[0] as u8;
+                let first = own[0] as u8;
                 let is_barred = if of_cell(first, What::Barred) == 1 { 255 } else { 0 };
-                let alike = square.cells == [u64::from(first) * ONES; SIDE] && square.barred == [is_barred; SIDE];
+                let alike = own == [u64::from(first) * ONES; SIDE] && bars == [is_barred; SIDE];
                 made.places.push(if alike { ALIKE | u32::from(first) } else { made.squares.len() as u32 });
                 if !alike {
-                    made.squares.push(square);
+                    made.squares.push(Square::new(own, bars));
                 }
             }
         }
