@@ -18,8 +18,9 @@ import pytest
 from _program import call, files, hall, write_pgm
 from PIL import Image
 
-from groundplan import Map, MapError, read
+from groundplan import Map, MapError, read, survey
 from groundplan.maps import _canvas, png
+from groundplan.simulate import warehouse
 
 Pixels = npt.NDArray[np.uint8]
 
@@ -171,6 +172,7 @@ def test_the_file_is_full_before_the_reading_where_a_limit_says_so(tmp_path: Pat
 SLOWLY = """
 import sys, time
 from groundplan.maps import _canvas, png
+from groundplan.simulate import warehouse
 _canvas.IN_MEMORY, png.STRIP, png.PIECE = 1000, 300, 20
 put = _canvas.Canvas.put
 def slowly(self, top, rows):
@@ -260,3 +262,19 @@ def test_a_map_is_equal_wherever_its_pixels_are(tmp_path: Path, small_memory: Pa
     parts: Map = read(tmp_path / "map.png", resolution=0.05)
     write_pgm(tmp_path / "map.pgm", hall())
     assert np.array_equal(parts.pixels, read(tmp_path / "map.pgm", resolution=0.05).pixels)
+
+
+def test_a_large_map_surveyed_in_little_memory_has_the_survey_of_one_of_which_all_is_kept() -> None:
+    pixels = np.full((11_600, 11_600), 205, np.uint8)
+    room = np.asarray(warehouse(seed=3).map.pixels)
+    height, width = room.shape
+    pixels[:height, :width] = room
+    pixels[-height:, -width:] = room
+    sparing = survey(pixels, resolution=0.05)
+    # What the faces are was measured; what they look like is made of the lines when it is asked for.
+    assert "subdivision" not in vars(sparing)
+    assert f"{len(sparing.occupancy.faces)} faces" in repr(sparing) and "subdivision" not in vars(sparing)
+    assert len(sparing.subdivision.areas) == len(sparing.occupancy.faces)
+    assert "subdivision" in vars(sparing)
+    assert not sparing.problems()
+    assert sparing.to_json() == survey(pixels, resolution=0.05, keep=True, threads=1).to_json()

@@ -18,6 +18,7 @@ __all__ = [
     "find_radiograms",
     "find_response",
     "find_walls",
+    "is_large",
     "problems",
     "reach",
     "resolve",
@@ -88,6 +89,7 @@ def survey(
     given: _Record,
     keep: bool,
 ) -> _Record: ...
+def is_large(layout: _Layout) -> bool: ...
 def find_gradients_in(
     layout: _Layout,
     held: tuple[int, int],

@@ -8,6 +8,7 @@ import math
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, fields
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
@@ -18,6 +19,7 @@ from groundplan import _core
 from groundplan._errors import FormatError, MapError, ParameterError
 from groundplan._files import unreadable, whole
 from groundplan._format import check_format
+from groundplan._memory import give_back
 from groundplan._queries import Place, Queries, Route
 from groundplan._results import (
     KINDS,
@@ -90,10 +92,10 @@ class Survey(Stage):
     reading: dict[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        info, cut = self.map, self.subdivision
+        info = self.map
         return (
             f"Survey({info.image!r}, {info.width} x {info.height} pixels of {info.resolution:g} m: "
-            f"{len(self.directions)} directions, {len(self.lines)} lines, {len(cut.areas)} faces, "
+            f"{len(self.directions)} directions, {len(self.lines)} lines, {len(self.occupancy.faces)} faces, "
             f"{len(self.walls)} walls, {self._label_table().count} labels, {len(self.warnings)} warnings)"
         )
 
@@ -447,11 +449,12 @@ def surveyed(
         edges = parts.get("gradients") or run(_core.find_gradients, grid, values, cores(threads))
         directions = run(_core.find_directions, grid, edges, values, cores(threads))
         parts = parts | {"gradients": edges, "directions": directions}
+    if _core.is_large(grid):
+        give_back()
     found = run(_core.survey, grid, values, cores(threads), own | parts, keep)
     stages = {
         "directions": Directions,
         "lines": Lines,
-        "subdivision": Subdivision,
         "occupancy": Occupancy,
         "walls": Walls,
     }
@@ -459,6 +462,7 @@ def surveyed(
         map=MapInfo(map.image, map.width, map.height, map.resolution, map.origin),
         parameters=resolve(parameters),
         radiograms=[made(Radiogram, arrays) for arrays in found["radiograms"]],
+        subdivision=NOT_YET,
         adjacency=NOT_YET,
         labels=NOT_YET,
         patterns=found["patterns"],
@@ -470,11 +474,21 @@ def surveyed(
     survey.__dict__.update(_map=map, _own=own, **kept)
     labels: _core.Labels = found["labels"]
     some = Table(len(labels), lambda some: labels.some(*some.indices(len(labels))[:2]), LABELS)
-    cut, walls = survey.subdivision, survey.walls
+    lines, walls, cut = survey.lines, survey.walls, found["subdivision"]
+    angles = survey.directions
+
+    @cache
+    def divided() -> Subdivision:
+        """Of a large map it is not kept: the lines make it again."""
+        if cut is not None:
+            return made(Subdivision, cut)
+        return made(Subdivision, _core.subdivide(grid, record(angles), record(lines), cores(threads)))
+
     survey.__dict__["_some_labels"] = some
     survey.__dict__["_later"] = {
         "labels": lambda: some.some(slice(None)),
-        "adjacency": lambda: made(Adjacency, _core.find_adjacency(record(cut), record(walls))),
+        "adjacency": lambda: made(Adjacency, _core.find_adjacency(record(divided()), record(walls))),
+        "subdivision": divided,
     }
     for name in survey.__dict__["_later"]:
         del survey.__dict__[name]

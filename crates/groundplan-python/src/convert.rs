@@ -168,7 +168,13 @@ pub fn gradients_on(dict: &Bound<'_, PyDict>, frame: &Frame) -> PyResult<Gradien
 /// A row for each face: percent, unknown, free and pixels of the pixels within it, then of the one under a sliver.
 pub fn from_sums<'py>(py: Python<'py>, made: &FaceSums) -> PyResult<Bound<'py, PyArray2<i64>>> {
     let row = |sums: &Sums| [sums.percent, sums.unknown, sums.free, sums.pixels];
-    let rows: Vec<i64> = made.within.iter().zip(&made.under).flat_map(|(a, b)| [row(a), row(b)]).flatten().collect();
+    let mut rows = vec![0; 8 * made.within.len()];
+    for (to, sums) in rows.chunks_exact_mut(8).zip(&made.within) {
+        to[..4].copy_from_slice(&row(sums));
+    }
+    for (face, sums) in &made.under {
+        rows[8 * *face as usize + 4..][..4].copy_from_slice(&row(sums));
+    }
     PyArray1::from_vec(py, rows).reshape([made.within.len(), 8])
 }
 
@@ -177,15 +183,16 @@ fn sums(array: &Bound<'_, PyAny>) -> PyResult<FaceSums> {
     let array = array.as_array();
     demand(array.ncols() == 8, "the sums have not 8 columns")?;
     let columns = |from: usize| {
-        let sums = |row: numpy::ndarray::ArrayView1<'_, i64>| Sums {
+        let sums = move |row: numpy::ndarray::ArrayView1<'_, i64>| Sums {
             percent: row[from],
             unknown: row[from + 1],
             free: row[from + 2],
             pixels: row[from + 3],
         };
-        array.rows().into_iter().map(sums).collect()
+        array.rows().into_iter().map(sums)
     };
-    let made = FaceSums { within: columns(0), under: columns(4) };
+    let under = (0..).zip(columns(4)).filter(|(_, sums)| sums.pixels > 0).collect();
+    let made = FaceSums { within: columns(0).collect(), under };
     demand(made.evidence().all(|sums| sums.pixels > 0), "the sums are not those of all rows")?;
     Ok(made)
 }

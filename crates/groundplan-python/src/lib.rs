@@ -54,6 +54,8 @@ mod _core {
         let parameters = convert::parameters(parameters)?;
         let given = Given { keep, ..convert::given(given, &layout.frame())? };
         let made = layout.with_grid(py, |grid| groundplan::survey(grid, &parameters, given, threads))?;
+        // There is a face at least: none are where they are not kept.
+        let divided = Some(made.subdivision).filter(|made| made.faces() > 0);
         let gradients = keep.then_some(made.gradients).map(|kept| convert::from_gradients(py, kept)).transpose()?;
         Ok(Named::new(py)
             .with("gradients", gradients)?
@@ -61,13 +63,19 @@ mod _core {
             .with("directions", convert::from_directions(py, made.directions)?)?
             .with("radiograms", convert::from_radiograms(py, &made.radiograms)?)?
             .with("lines", convert::from_lines(py, made.lines)?)?
-            .with("subdivision", convert::from_subdivision(py, made.subdivision)?)?
+            .with("subdivision", divided.map(|made| convert::from_subdivision(py, made)).transpose()?)?
             .with("occupancy", convert::from_occupancy(py, made.occupancy)?)?
             .with("walls", convert::from_walls(py, made.walls)?)?
             .with("labels", Py::new(py, Labels::new(made.labels, made.confidence))?)?
             .with("patterns", convert::from_patterns(py, &made.patterns)?)?
             .with("warnings", made.warnings.into_iter().map(|w| (w.code, w.message)).collect::<Vec<_>>())?
             .done())
+    }
+
+    /// Whether a map is of so many pixels that memory is spared.
+    #[pyfunction]
+    fn is_large(layout: Layout<'_>) -> bool {
+        groundplan::is_large(&layout.frame())
     }
 
     /// II-A: oriented gradients of the edge pixels.

@@ -71,18 +71,8 @@ fn band(n: usize, rows: usize) -> Range<usize> {
     n * BAND_ROWS..((n + 1) * BAND_ROWS).min(rows)
 }
 
-/// A sum over the bands of `0..rows`: each thread adds bands to a total of its own, and the totals are merged. The
-/// sum must not depend on the order, as sums of integers do not.
-pub fn fold_bands<T: Send>(
-    rows: usize,
-    threads: usize,
-    empty: impl Fn() -> T + Sync,
-    add: impl Fn(&mut T, Range<usize>) + Sync,
-    merge: impl Fn(&mut T, T),
-) -> T {
-    fold(rows.div_ceil(BAND_ROWS), threads, empty, |total, n| add(total, band(n, rows)), merge)
-}
-
+/// A sum over `0..count`: each thread adds to a total of its own, and the totals are merged. The sum must not depend on
+/// the order, as sums of integers do not.
 pub fn fold<T: Send>(
     count: usize,
     threads: usize,

@@ -1,7 +1,7 @@
 //! II-D: O(edge), and where on the edges it lies, by the edge pixels that cover them.
 
 use crate::arrangement::Arrangement;
-use crate::bits::runs;
+use crate::bits;
 use crate::directions::Directions;
 use crate::gradients::Gradients;
 use crate::grid::{Frame, tidy};
@@ -113,13 +113,15 @@ impl<'a> Coverage<'a> {
     pub fn of_edges(self, arrangement: &Arrangement) -> Covered {
         let Self { frame, diagonal, families, .. } = self;
         let mut shares = vec![0.0; arrangement.edges.len()];
-        let mut by_line: Vec<Vec<(u32, [f64; 2])>> = vec![Vec::new(); arrangement.line_edges.len()];
-        for (heading, member) in families.into_iter().flat_map(|f| f.members.into_iter().map(move |m| (f.heading, m))) {
-            let ([cos, sin], bits) = (heading, &member.covered);
-            if bits.is_empty() {
-                continue;
-            }
-            let sums = counts(bits);
+        let mut runs: Vec<[f64; 2]> = Vec::new();
+        let mut offsets = vec![0; arrangement.edges.len() + 1];
+        // The edges are numbered line after line.
+        let members = families.into_iter().flat_map(|f| f.members.into_iter().map(move |m| (f.heading, m)));
+        let mut members: Vec<_> = members.filter(|(_, member)| !member.covered.is_empty()).collect();
+        members.sort_by_key(|(_, member)| member.line);
+        for ([cos, sin], member) in members {
+            let bits = member.covered;
+            let sums = counts(&bits);
             for edge in arrangement.line_edges[member.line].clone() {
                 let ends = arrangement.edges[edge as usize].map(|v| {
                     let [x, y] = arrangement.vertices[v as usize];
@@ -132,7 +134,7 @@ impl<'a> Coverage<'a> {
                     first = f64::midpoint(from, to) as usize;
                     last = first + 1;
                 }
-                let count = count_below(bits, &sums, last) - count_below(bits, &sums, first);
+                let count = count_below(&bits, &sums, last) - count_below(&bits, &sums, first);
                 shares[edge as usize] = tidy(f64::from(count) / (last - first) as f64);
                 let metres = |bin: usize| {
                     let place = if bin == first {
@@ -144,27 +146,21 @@ impl<'a> Coverage<'a> {
                     };
                     tidy((place - ends[0]).abs() * frame.resolution)
                 };
-                let found = &mut by_line[member.line];
-                let before = found.len();
-                found.extend(runs(bits, first..last, true).map(|run| {
+                let before = runs.len();
+                runs.extend(bits::runs(&bits, first..last, true).map(|run| {
                     let (a, b) = (metres(run.start), metres(run.end));
-                    (edge, [a.min(b), a.max(b)])
+                    [a.min(b), a.max(b)]
                 }));
                 if ends[0] > ends[1] {
-                    found[before..].reverse();
+                    runs[before..].reverse();
                 }
+                offsets[edge as usize + 1] = (runs.len() - before) as u32;
             }
         }
-        // The edges are numbered line after line.
-        let mut offsets = vec![0; arrangement.edges.len() + 1];
-        by_line.iter().flatten().for_each(|&(edge, _)| offsets[edge as usize + 1] += 1);
         for edge in 1..offsets.len() {
             offsets[edge] += offsets[edge - 1];
         }
-        let mut runs = Vec::with_capacity(by_line.iter().map(Vec::len).sum());
-        for line in by_line {
-            runs.extend(line.into_iter().map(|(_, run)| run));
-        }
+        runs.shrink_to_fit();
         Covered { shares, runs, offsets }
     }
 }

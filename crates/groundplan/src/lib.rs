@@ -55,6 +55,7 @@ pub mod wavelets;
 pub use grid::{Frame, Grid, State, Table};
 pub use labels::{JunctionKind, Label, Memory, Recall};
 pub use parameters::{ParameterError, Parameters, TABLE, Value};
+pub use sparing::is_large;
 pub use survey::{Given, Survey, Warning, survey, survey_sparingly};
 
 /// The version of the method, and of all of Groundplan.

@@ -7,7 +7,7 @@ use crate::gradients::Gradients;
 use crate::grid::{Frame, State, tidy};
 use crate::lines::Lines;
 use crate::parameters::Parameters;
-use crate::sums::FaceSums;
+use crate::sums::{FaceSums, Sums};
 
 /// What lies in the faces and on the edges.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,28 +34,28 @@ pub struct Occupancy {
 impl Occupancy {
     /// O(face), from what the pixels add to the faces; nothing of the edges yet.
     pub(crate) fn of_faces(sums: &FaceSums) -> Self {
-        let share = |part: i64, of: i64| tidy(part as f64 / of as f64);
-        let faces: Vec<f64> = sums.evidence().map(|s| share(s.percent, 100 * s.pixels)).collect();
-        let unknown: Vec<f64> = sums.evidence().map(|s| share(s.unknown, s.pixels)).collect();
-        let state = |(&occupancy, &unknown): (&f64, &f64)| {
-            if unknown > 0.5 {
+        Self {
+            faces: sums.evidence().map(occupied).collect(),
+            unknown: sums.evidence().map(unknown).collect(),
+            free: sums.evidence().map(|s| share(s.free, s.pixels)).collect(),
+            pixels: sums.within.iter().map(|s| s.pixels.unsigned_abs()).collect(),
+            ..Self::states_of(sums)
+        }
+    }
+
+    /// What each face mostly is, and no more.
+    pub(crate) fn states_of(sums: &FaceSums) -> Self {
+        let state = |sums: Sums| {
+            if unknown(sums) > 0.5 {
                 State::Unknown
-            } else if occupancy > OCCUPIED {
+            } else if occupied(sums) > OCCUPIED {
                 State::Occupied
             } else {
                 State::Free
             }
         };
-        Self {
-            states: faces.iter().zip(&unknown).map(state).collect(),
-            faces,
-            unknown,
-            free: sums.evidence().map(|s| share(s.free, s.pixels)).collect(),
-            pixels: sums.within.iter().map(|s| s.pixels.unsigned_abs()).collect(),
-            ..Self::default()
-        }
+        Self { states: sums.evidence().map(state).collect(), ..Self::default() }
     }
-
     /// And O(edge).
     pub(crate) fn with(self, covered: Covered) -> Self {
         Self { edges: covered.shares, runs: covered.runs, run_offsets: covered.offsets, ..self }
@@ -66,6 +66,18 @@ impl Occupancy {
     pub fn runs_of(&self, edge: usize) -> &[[f64; 2]] {
         &self.runs[self.run_offsets[edge] as usize..self.run_offsets[edge + 1] as usize]
     }
+}
+
+fn share(part: i64, of: i64) -> f64 {
+    tidy(part as f64 / of as f64)
+}
+
+fn occupied(sums: Sums) -> f64 {
+    share(sums.percent, 100 * sums.pixels)
+}
+
+fn unknown(sums: Sums) -> f64 {
+    share(sums.unknown, sums.pixels)
 }
 
 /// A face is occupied when its average occupancy exceeds this and it is not mostly unknown.

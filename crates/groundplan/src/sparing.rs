@@ -6,7 +6,7 @@ use crate::arrangement::arrange;
 use crate::bands::side_by_side;
 use crate::coverage::Coverage;
 use crate::gradients::{Gradients, find_gradients_in};
-use crate::grid::Grid;
+use crate::grid::{Frame, Grid};
 use crate::labels::{Division, Ground, Memory, Recall, Sight, Sketch, find_confidence, find_labels_in, find_patterns};
 use crate::occupancy::Occupancy;
 use crate::parameters::Parameters;
@@ -14,50 +14,63 @@ use crate::subdivision::Subdivision;
 use crate::sums::FaceSums;
 use crate::survey::{Given, Structure, Survey};
 use crate::walls::find_walls;
+use std::borrow::Cow;
 
 /// Maps of more pixels than this are surveyed so.
-pub(crate) const MANY: usize = 1 << 27;
+const MANY: usize = 1 << 27;
 /// Rows of which the gradients are found anew at once.
 const ROWS: usize = 1024;
 
-/// As [`crate::survey`] makes it, with labels by strips; but neither gradients nor adjacency are kept. The number of
-/// edge pixels comes with it.
+/// True of maps of so many pixels that memory is spared.
+#[must_use]
+pub fn is_large(frame: &Frame) -> bool {
+    frame.width * frame.height > MANY
+}
+
+/// As [`crate::survey`] makes it, with labels by strips; but neither gradients nor adjacency are kept, nor the
+/// subdivision, which the lines make again. The number of edge pixels comes with it.
 pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, threads: usize) -> (Survey, usize) {
     let recall = Recall::default();
     let frame = &grid.frame;
     let mut structure = Structure::new(grid, parameters, &mut given, threads);
     let count = structure.gradients.pixels.len();
-    let sight = {
-        let evidence = structure.evidence(grid, parameters, threads, &recall);
-        side_by_side(1, |side| Sight::new(side, &evidence, Ground::start(side, grid, threads, &recall)).done())
-    };
-    // The labels' racks need specks, and no other stage needs gradients but the coverage of edges, which takes them
-    // part by part.
-    structure.gradients = structure.gradients.specks();
-    let evidence = structure.evidence(grid, parameters, threads, &recall);
-
-    let sketch = Sketch::new(&evidence, sight);
     let arranged = |of: &Structure| arrange(frame, &of.directions.angles, &of.lines, threads);
     let sums = given.sums;
-    let measured = |arrangement: &_| match &sums {
-        Some(sums) if sums.fits(arrangement) => Occupancy::of_faces(sums),
-        _ => Occupancy::of_faces(&FaceSums::new(grid, arrangement, 0..frame.height, threads)),
+    let summed = |arrangement: &_| match &sums {
+        Some(sums) if sums.fits(arrangement) => Cow::Borrowed(sums),
+        _ => Cow::Owned(FaceSums::new(grid, arrangement, 0..frame.height, threads)),
     };
-    let (labels, confidence) = {
-        // What the labels ask of the faces: their middles and what they mostly are.
+    // What the labels ask of the faces: what they mostly are and their middles.
+    let (subdivision, occupancy) = {
         let arrangement = arranged(&structure);
-        let states = measured(&arrangement).states;
-        let occupancy = Occupancy { states, ..Occupancy::default() };
+        let occupancy = Occupancy::states_of(&summed(&arrangement));
         let centres = Subdivision::new(frame, arrangement, threads).centres;
-        let subdivision = Subdivision { centres, ..Subdivision::default() };
+        (Subdivision { centres, ..Subdivision::default() }, occupancy)
+    };
+    let sight = {
+        let evidence = structure.evidence(grid, parameters, threads, &recall);
+        side_by_side(1, |side| Sight::lined(&evidence, Ground::start(side, grid, threads, &recall)))
+    };
+    // What is seen between the lines and the labels' racks need specks, and no other stage needs gradients but the
+    // coverage of edges, which takes them part by part.
+    structure.gradients = structure.gradients.specks();
+    let (labels, confidence) = {
+        let evidence = structure.evidence(grid, parameters, threads, &recall);
         let division = Division { subdivision: &subdivision, occupancy: &occupancy, adjacency: &Adjacency::default() };
-        let labels = find_labels_in(&evidence, &division, sketch);
+        let labels = find_labels_in(&evidence, &division, Sketch::new(&evidence, sight.seen(&evidence)));
         let confidence = find_confidence(&evidence, &labels);
         (labels, confidence)
     };
+    drop((subdivision, occupancy));
     structure.gradients = Gradients::default();
 
-    let arrangement = arranged(&structure);
+    let mut arrangement = arranged(&structure);
+    let occupancy = {
+        let sums = summed(&arrangement);
+        // Walls are found from the edges alone.
+        (arrangement.face_halves, arrangement.rows_below) = (Vec::new(), Vec::new());
+        Occupancy::of_faces(&sums)
+    };
     let Structure { gradients, directions, radiograms, lines } = structure;
     let mut coverage = Coverage::new(frame, &arrangement, &directions, &lines, parameters);
     for first in (0..frame.height).step_by(ROWS) {
@@ -65,9 +78,8 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
         coverage.add(&find_gradients_in(grid, rows, 0..frame.width, parameters, threads));
     }
     let covered = coverage.of_edges(&arrangement);
-    let occupancy = measured(&arrangement).with(covered);
-    let subdivision = Subdivision::new(frame, arrangement, threads);
-    let walls = find_walls(&subdivision, &occupancy, parameters);
+    let occupancy = occupancy.with(covered);
+    let walls = find_walls(&Subdivision::of_edges(frame, arrangement, threads), &occupancy, parameters);
     let survey = Survey {
         memory: Memory::default(),
         patterns: find_patterns(&directions, &labels),
@@ -75,7 +87,7 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
         directions,
         radiograms,
         lines,
-        subdivision,
+        subdivision: Subdivision::default(),
         occupancy,
         walls,
         labels,

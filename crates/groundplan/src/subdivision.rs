@@ -29,6 +29,15 @@ pub struct Subdivision {
     pub map_area: f64,
 }
 
+fn in_metres(frame: &Frame, mut vertices: Vec<[f64; 2]>, threads: usize) -> Vec<[f64; 2]> {
+    each(vertices.chunks_mut(SHARE).collect(), threads, |part| {
+        for vertex in part {
+            *vertex = frame.to_metres(*vertex).map(tidy);
+        }
+    });
+    vertices
+}
+
 /// So many faces or vertices are worth a thread's while.
 const SHARE: usize = 1 << 14;
 
@@ -60,14 +69,8 @@ impl Subdivision {
                 *centre = frame.to_metres(middle).map(tidy);
             }
         });
-        let mut vertices = arrangement.vertices;
-        each(vertices.chunks_mut(SHARE).collect(), threads, |part| {
-            for vertex in part {
-                *vertex = frame.to_metres(*vertex).map(tidy);
-            }
-        });
         Self {
-            vertices,
+            vertices: in_metres(frame, arrangement.vertices, threads),
             edge_vertices: arrangement.edges,
             edge_lines: arrangement.edge_lines,
             edge_faces: arrangement.edge_faces,
@@ -77,6 +80,18 @@ impl Subdivision {
             centres,
             areas,
             map_area: frame.width as f64 * frame.height as f64 * frame.resolution.powi(2),
+        }
+    }
+
+    /// Without the lists of the faces: what walls are found from.
+    pub(crate) fn of_edges(frame: &Frame, arrangement: Arrangement, threads: usize) -> Self {
+        let Arrangement { vertices, edges, edge_lines, edge_faces, .. } = arrangement;
+        Self {
+            vertices: in_metres(frame, vertices, threads),
+            edge_vertices: edges,
+            edge_lines,
+            edge_faces,
+            ..Self::default()
         }
     }
 

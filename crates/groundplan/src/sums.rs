@@ -2,7 +2,7 @@
 //! crossings.
 
 use crate::arrangement::{Arrangement, NONE};
-use crate::bands::fold_bands;
+use crate::bands::{BAND_ROWS, map_bands};
 use crate::grid::{Grid, State};
 use std::ops::Range;
 
@@ -33,8 +33,8 @@ impl Sums {
 pub struct FaceSums {
     /// Over the pixels whose centres lie in the face.
     pub within: Vec<Sums>,
-    /// Of a sliver between the pixels' centres: the pixel that its middle lies in.
-    pub under: Vec<Sums>,
+    /// Of slivers between the pixels' centres, in the order of the faces: the pixel that the middle of each lies in.
+    pub under: Vec<(u32, Sums)>,
 }
 
 impl FaceSums {
@@ -42,23 +42,25 @@ impl FaceSums {
     #[must_use]
     pub fn new(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads: usize) -> Self {
         let within = face_sums(grid, arrangement, rows.clone(), threads);
-        let sliver = |(face, sums): (usize, &Sums)| match sums.pixels {
-            0 => pixel_under(grid, arrangement, face, &rows).unwrap_or_default(),
-            _ => Sums::default(),
-        };
-        let under = within.iter().enumerate().map(sliver).collect();
+        let slivers = within.iter().enumerate().filter(|(_, sums)| sums.pixels == 0);
+        let under = slivers.filter_map(|(face, _)| Some((face as u32, pixel_under(grid, arrangement, face, &rows)?)));
+        let under = under.collect();
         Self { within, under }
     }
 
     /// True when they are of as many faces as there are.
     #[must_use]
     pub fn fits(&self, arrangement: &Arrangement) -> bool {
-        [&self.within, &self.under].iter().all(|part| part.len() == arrangement.face_count())
+        self.within.len() == arrangement.face_count()
     }
 
     /// What each face is judged by: its pixels, or where it has none the one under its middle.
     pub fn evidence(&self) -> impl Iterator<Item = Sums> + '_ {
-        self.within.iter().zip(&self.under).map(|(within, under)| if within.pixels > 0 { *within } else { *under })
+        let mut under = self.under.iter().peekable();
+        self.within.iter().zip(0..).map(move |(within, face)| {
+            let under = under.next_if(|(sliver, _)| *sliver == face);
+            if within.pixels > 0 { *within } else { under.map_or_else(Sums::default, |(_, sums)| *sums) }
+        })
     }
 }
 
@@ -86,6 +88,8 @@ fn pixel_under(grid: &Grid, arrangement: &Arrangement, face: usize, rows: &Range
 
 /// Pixels that are looked at together.
 const WORD: usize = 8;
+/// Rows that are added up before they are put to the others.
+const TOGETHER: usize = 64 * BAND_ROWS;
 
 /// Sums of each face: what lies left of its right side less what lies left of its left side, row by row. A pixel
 /// belongs to the face that its centre lies in; a centre on a line belongs to the right of it or above.
@@ -105,15 +109,15 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads
         free: (sum >> 88) as i64,
         pixels,
     };
-    let empty = || vec![Sums::default(); arrangement.face_count()];
-    fold_bands(
-        rows.len(),
-        threads,
-        empty,
-        |totals, band| {
-            let band = band.start + rows.start..band.end + rows.start;
+    let mut totals = vec![Sums::default(); arrangement.face_count()];
+    // Some bands at a time, each with the faces that it has a part of: few of all.
+    for first in rows.clone().step_by(TOGETHER) {
+        let some = first..rows.end.min(first + TOGETHER);
+        let parts = map_bands(some.len(), threads, |band| {
+            let band = band.start + some.start..band.end + some.start;
             let mut left = vec![0u128; width / WORD + 1];
             let crossings = Crossings::new(arrangement, band.clone());
+            let mut sums = vec![Sums::default(); crossings.faces.len()];
             for y in band {
                 let row = grid.row(y);
                 let words = row.chunks_exact(WORD);
@@ -128,40 +132,43 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads
                     }
                 }
                 left[width / WORD] = sum;
-                crossings.of_row(arrangement, y, width, |half, column| {
+                crossings.of_row(arrangement, y, width, |faces, column| {
                     let rest = &row[column - column % WORD..column];
                     let sum = left[column / WORD] + rest.iter().map(|&value| packed[usize::from(value)]).sum::<u128>();
-                    let sums = unpack(sum, column as i64);
-                    for (half, sign) in [(half, 1), (Arrangement::twin(half), -1)] {
-                        let face = arrangement.face(half);
+                    let part = unpack(sum, column as i64);
+                    for (face, sign) in faces.into_iter().zip([1, -1]) {
                         if face != NONE {
-                            totals[face as usize].add(sign, sums);
+                            sums[face as usize].add(sign, part);
                         }
                     }
                 });
             }
-        },
-        |totals, part| {
-            totals.iter_mut().zip(part).for_each(|(total, sums)| total.add(1, sums));
-        },
-    )
+            (crossings.faces, sums)
+        });
+        for (face, sums) in parts.into_iter().flat_map(|(faces, sums)| faces.into_iter().zip(sums)) {
+            totals[face as usize].add(1, sums);
+        }
+    }
+    totals
 }
 
 /// Edges that cross the rows of a band, by row.
 struct Crossings {
     first_row: usize,
-    /// Half-edges that run upwards across each row.
-    rows: Vec<Vec<u32>>,
+    /// The faces beside them, ascending.
+    faces: Vec<u32>,
+    /// Half-edges that run upwards across each row, and where among those faces the ones left and right of each are.
+    rows: Vec<Vec<(u32, [u32; 2])>>,
 }
 
 impl Crossings {
     fn new(arrangement: &Arrangement, band: Range<usize>) -> Self {
-        let mut rows = vec![Vec::new(); band.len()];
+        let mut crossing = Vec::new();
         let mut add = |edge: u32| {
             let [p, q] = arrangement.edges[edge as usize].map(|v| arrangement.rows_below[v as usize] as usize);
-            let half = 2 * edge + u32::from(p > q);
-            for y in p.min(q).max(band.start)..p.max(q).min(band.end) {
-                rows[y - band.start].push(half);
+            let rows = p.min(q).max(band.start)..p.max(q).min(band.end);
+            if !rows.is_empty() {
+                crossing.push((2 * edge + u32::from(p > q), rows));
             }
         };
         for (line, edges) in arrangement.lines.iter().zip(&arrangement.line_edges) {
@@ -193,13 +200,29 @@ impl Crossings {
             }
         }
         let border = arrangement.edge_lines.iter().rposition(|&line| line != NONE).map_or(0, |n| n + 1);
-        (border as u32..arrangement.edges.len() as u32).for_each(add);
-        Self { first_row: band.start, rows }
+        (border as u32..arrangement.edges.len() as u32).for_each(&mut add);
+        let beside = |half: u32| [half, Arrangement::twin(half)].map(|half| arrangement.face(half));
+        let mut faces: Vec<u32> = crossing.iter().flat_map(|(half, _)| beside(*half)).collect();
+        faces.sort_unstable();
+        faces.dedup();
+        // The outside is none, and would be the last.
+        if faces.last() == Some(&NONE) {
+            faces.pop();
+        }
+        let mut rows = vec![Vec::new(); band.len()];
+        for (half, crossed) in crossing {
+            let own = beside(half).map(|face| faces.binary_search(&face).map_or(NONE, |place| place as u32));
+            for row in &mut rows[crossed.start - band.start..crossed.end - band.start] {
+                row.push((half, own));
+            }
+        }
+        Self { first_row: band.start, faces, rows }
     }
 
-    /// Calls `visit` with each half-edge that runs upwards across row `y` and the number of pixels left of it.
-    fn of_row(&self, arrangement: &Arrangement, y: usize, width: usize, mut visit: impl FnMut(u32, usize)) {
-        for &half in &self.rows[y - self.first_row] {
+    /// Calls `visit` with the places of the faces left and right of each half-edge that runs upwards across row `y`, and
+    /// the number of pixels left of it.
+    fn of_row(&self, arrangement: &Arrangement, y: usize, width: usize, mut visit: impl FnMut([u32; 2], usize)) {
+        for &(half, faces) in &self.rows[y - self.first_row] {
             let line = arrangement.edge_lines[(half >> 1) as usize];
             let column = if line == NONE {
                 // Upwards along the right side, downwards (so its twin upwards) along the left.
@@ -210,7 +233,7 @@ impl Crossings {
                 let (n, d) = if d < 0 { (-n, -d) } else { (n, d) };
                 (-(-n).div_euclid(d)).clamp(0, width as i64) as usize
             };
-            visit(half, column);
+            visit(faces, column);
         }
     }
 }

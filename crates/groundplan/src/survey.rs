@@ -39,7 +39,7 @@ pub struct Survey {
     pub radiograms: Vec<Radiogram>,
     /// II-B: lines.
     pub lines: Lines,
-    /// II-C: vertices, edges, faces.
+    /// II-C: vertices, edges, faces; nothing where it is not kept.
     pub subdivision: Subdivision,
     /// II-D: O(face), O(edge).
     pub occupancy: Occupancy,
@@ -80,7 +80,7 @@ pub struct Given {
 pub fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, threads: usize) -> Survey {
     let frame = &grid.frame;
     let strips = parameters.labels_method == Method::Strips;
-    if strips && !given.keep && frame.width * frame.height > sparing::MANY {
+    if strips && !given.keep && sparing::is_large(frame) {
         return survey_sparingly(grid, parameters, given, threads);
     }
     // What the labels need of the pixels alone, and then of the lines, is made beside the other stages.
@@ -128,8 +128,9 @@ pub fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, threads: u
     survey
 }
 
-/// The same with labels by strips, in far less memory and somewhat more time: one stage after another, and no gradients
-/// are kept. Maps of many pixels are surveyed so.
+/// The same with labels by strips, in far less memory and somewhat more time: one stage after another, and neither the
+/// gradients are kept nor the subdivision, which [`arrange`] and [`Subdivision::new`] make of the lines. Maps of many
+/// pixels are surveyed so.
 #[must_use]
 pub fn survey_sparingly(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> Survey {
     let (mut survey, edges) = sparing::survey(grid, parameters, given, threads);

@@ -47,21 +47,16 @@ const LEAST_OCCUPANCY_AT_FRONTIER: f64 = 0.2;
 /// C(edge) = |O(f1) - O(f2)| > t1 or O(edge) > t2.
 #[must_use]
 pub fn find_walls(subdivision: &Subdivision, occupancy: &Occupancy, parameters: &Parameters) -> Walls {
-    let disparity: Vec<f64> = subdivision
-        .edge_faces
-        .iter()
-        .map(|&[l, r]| {
-            if l == NONE || r == NONE {
-                0.0
-            } else {
-                tidy((occupancy.faces[l as usize] - occupancy.faces[r as usize]).abs())
-            }
-        })
-        .collect();
+    let edges = 0..subdivision.edge_faces.len();
+    let disparity = |e: usize| match subdivision.edge_faces[e] {
+        [l, r] if l == NONE || r == NONE => 0.0,
+        [l, r] => tidy((occupancy.faces[l as usize] - occupancy.faces[r as usize]).abs()),
+    };
     let inner = |e: usize| !subdivision.edge_faces[e].contains(&NONE);
-    let cogent: Vec<bool> = (0..disparity.len())
+    let cogent: Vec<bool> = edges
+        .clone()
         .map(|e| {
-            inner(e) && (disparity[e] > parameters.walls_disparity || occupancy.edges[e] > parameters.walls_occupancy)
+            inner(e) && (disparity(e) > parameters.walls_disparity || occupancy.edges[e] > parameters.walls_occupancy)
         })
         .collect();
     let kind = |e: usize| {
@@ -71,16 +66,16 @@ pub fn find_walls(subdivision: &Subdivision, occupancy: &Occupancy, parameters: 
         let unknown = subdivision.edge_faces[e].iter().any(|&f| occupancy.states[f as usize] == State::Unknown);
         if unknown && occupancy.edges[e] < LEAST_OCCUPANCY_AT_FRONTIER {
             None
-        } else if disparity[e] > parameters.walls_disparity {
+        } else if disparity(e) > parameters.walls_disparity {
             Some(WallKind::Separating)
         } else {
             Some(WallKind::Freestanding)
         }
     };
-    let kinds: Vec<Option<WallKind>> = (0..disparity.len()).map(kind).collect();
+    let kinds: Vec<Option<WallKind>> = edges.clone().map(kind).collect();
     let min_opening = parameters.walls_min_opening + SAME;
-    let evidence = Evidence { subdivision, occupancy, kinds: &kinds, min_opening };
-    Walls { walls: evidence.walls(), cogent, disparity }
+    let walls = Evidence { subdivision, occupancy, kinds: &kinds, min_opening }.walls();
+    Walls { walls, cogent, disparity: edges.map(disparity).collect() }
 }
 
 /// What the walls are traced from.

@@ -4,8 +4,10 @@
 mod common;
 
 use common::{Case, Random, STEP};
+use groundplan::arrangement::arrange;
 use groundplan::gradients::Gradients;
 use groundplan::parameters::{Method, Range};
+use groundplan::subdivision::Subdivision;
 use groundplan::{Frame, Given, Grid, Parameters, Survey, TABLE, Table, Value, survey, survey_sparingly};
 use std::time::{Duration, Instant};
 
@@ -129,7 +131,11 @@ fn survey_case(seed: u64) -> Result<(), String> {
     }
     if parameters.labels_method == Method::Strips {
         let sparing = survey_sparingly(&grid, &parameters, Given::default(), 2);
-        let kept = Survey { gradients: Gradients::default(), ..made };
+        let again = arrange(&frame, &sparing.directions.angles, &sparing.lines, 1);
+        if format!("{:?}", made.subdivision) != format!("{:?}", Subdivision::new(&frame, again, 1)) {
+            return Err("the lines make another subdivision than that of the survey".to_owned());
+        }
+        let kept = Survey { gradients: Gradients::default(), subdivision: Subdivision::default(), ..made };
         if format!("{kept:?}") != format!("{sparing:?}") {
             return Err("a survey that lets go what it can is another".to_owned());
         }

@@ -11,7 +11,7 @@ use super::racks::{self, Row};
 use super::rooms::{Bar, Space};
 use super::turned::Turned;
 use super::{Evidence, Ground};
-use crate::bands::{Later, Side, map_each};
+use crate::bands::{Later, Side, each, map_each};
 
 /// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
 const ALONE: (f64, f64) = (2.0, 5.0);
@@ -42,24 +42,39 @@ type Free = Option<(Space, Vec<Bar>)>;
 impl<'s, 'a> Sight<'a, Later<'s, Free>> {
     /// From the lines, and what was begun before there were any.
     pub fn new(side: Side<'s, '_>, evidence: &'s Evidence, Ground { look, space }: Ground<'s, 'a>) -> Self {
-        let free = side.start(move || {
-            space.get().map(|space| {
-                let bars = space.bars(evidence);
-                (space, bars)
-            })
-        });
+        let free = side.start(move || space.get().map(|space| with_bars(evidence, space)));
         let look = look.get();
         let count = evidence.directions.angles.len();
-        // Each view shares its own work out among what threads are left.
-        let own = Evidence { threads: evidence.threads / count.max(1), ..*evidence };
-        let views = map_each(count, evidence.threads, |d| Turned::new(&own, &look, d));
+        let views = map_each(count, evidence.threads, |d| Turned::new(&shared_out(evidence), &look, d));
         Self { look, views, free }
     }
+}
 
-    /// When nothing of it is still being made.
-    pub fn done(self) -> Sight<'a, Free> {
-        Sight { look: self.look, views: self.views, free: self.free.get() }
+impl<'a> Sight<'a, Free> {
+    /// What needs gradients, one after another; nothing is seen between the lines yet.
+    pub fn lined(evidence: &Evidence, Ground { look, space }: Ground<'_, 'a>) -> Self {
+        let free = space.get().map(|space| with_bars(evidence, space));
+        let count = evidence.directions.angles.len();
+        Self { look: look.get(), views: map_each(count, evidence.threads, |d| Turned::lined(evidence, d)), free }
     }
+
+    /// And what lies between the lines, for which of the gradients the specks are enough.
+    pub fn seen(mut self, evidence: &Evidence) -> Self {
+        let Self { look, views, .. } = &mut self;
+        each(views.iter_mut().collect(), evidence.threads, |view: &mut Turned| view.see(&shared_out(evidence), look));
+        self
+    }
+}
+
+/// A space and what may be a door in it.
+fn with_bars(evidence: &Evidence, space: Space) -> (Space, Vec<Bar>) {
+    let bars = space.bars(evidence);
+    (space, bars)
+}
+
+/// For each view: it shares its own work out among what threads are left.
+fn shared_out<'a>(evidence: &Evidence<'a>) -> Evidence<'a> {
+    Evidence { threads: evidence.threads / evidence.directions.angles.len().max(1), ..*evidence }
 }
 
 impl Sketch {

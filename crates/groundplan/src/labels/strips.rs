@@ -14,8 +14,9 @@ use super::sketch::{Plan, Sketch};
 use super::turned::Turned;
 use super::whole;
 use super::{Division, Evidence, JunctionKind, Label, outline};
-use crate::bands::side_by_side;
+use crate::bands::{Later, side_by_side};
 use crate::grid::{State, tidy};
+use crate::sparing::is_large;
 use std::collections::BTreeSet;
 
 /// So far round a rack there are no doors, metres.
@@ -81,8 +82,9 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
     let grounds: Vec<_> = rows.iter().map(rack).collect();
     let [racks, rooms, pillars] = side_by_side(evidence.threads, |side| {
         let squares = &squares;
-        // The views are let go with the racks: the regions need the room.
+        // The views are let go with the racks: the regions of a large map need the room.
         let racks = side.start(move || rack_labels(evidence, division, &views, &rows, squares));
+        let racks = if is_large(&evidence.grid.frame) { Later::Made(racks.get()) } else { racks };
         let pillars = side.start(|| pillar_labels(evidence, &space.raster, &grounds, squares));
         let rooms = rooms::find(evidence, division, &space, bars, first, &racked, &corridors, squares);
         [racks.get(), rooms, pillars.get()]

@@ -57,6 +57,13 @@ pub struct Turned {
 impl Turned {
     /// The map seen along one direction.
     pub fn new(evidence: &Evidence, look: &Look, direction: usize) -> Self {
+        let mut made = Self::lined(evidence, direction);
+        made.see(evidence, look);
+        made
+    }
+
+    /// What lies on a direction's lines, and nothing between them yet.
+    pub fn lined(evidence: &Evidence, direction: usize) -> Self {
         let frame = &evidence.grid.frame;
         let angle = evidence.directions.angles[direction];
         let (cos, sin) = (libm::cos(angle), libm::sin(angle));
@@ -86,11 +93,15 @@ impl Turned {
             rows: Vec::new(),
             keys: (Key::default(), Vec::new()),
         };
-        (made.cells, made.rows) = made.look_at(evidence, look);
         made.cover_lines(evidence);
-        made.pitch = super::pitch::find(evidence, &made);
-        made.keys = made.find_keys();
         made
+    }
+
+    /// And all that lies between them; of the gradients the specks are asked.
+    pub fn see(&mut self, evidence: &Evidence, look: &Look) {
+        (self.cells, self.rows) = self.look_at(evidence, look);
+        self.pitch = super::pitch::find(evidence, self);
+        self.keys = self.find_keys();
     }
 
     /// The samples that are blocked or occupied in each cell.

@@ -8,7 +8,7 @@ use groundplan::gradients::Gradients;
 use groundplan::lines::Lines;
 use groundplan::occupancy::{Occupancy, find_occupancy};
 use groundplan::subdivision::Subdivision;
-use groundplan::sums::FaceSums;
+use groundplan::sums::{FaceSums, Sums};
 use groundplan::{Frame, Grid, Parameters, Table};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -233,8 +233,9 @@ impl Case {
             .collect();
         let whole: Vec<i64> = sums.within.iter().map(|sums| sums.percent + 1000 * sums.free).collect();
         assert_eq!(added, whole, "face sums in parts");
-        for (face, under) in sums.under.iter_mut().enumerate().filter(|(_, under)| under.pixels > 0) {
-            *under = parts.iter().map(|part| part.under[face]).find(|part| part.pixels > 0).unwrap_or_default();
+        for (sliver, under) in &mut sums.under {
+            let mut found = parts.iter().flat_map(|part| &part.under).filter(|(face, _)| face == sliver);
+            *under = found.next().map_or_else(Sums::default, |(_, sums)| *sums);
         }
         find_occupancy(&grid.frame, &sums, arrangement, &directions, &lines, &gradients, &parameters)
     }

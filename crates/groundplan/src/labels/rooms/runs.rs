@@ -1,6 +1,6 @@
 //! Numbers of pixels as runs along rows: of a map far more is alike from pixel to pixel than is not.
 
-use crate::bits::{Bits, WORD};
+use crate::bits::Bits;
 use crate::sets::Sets;
 use std::ops::Range;
 
@@ -27,6 +27,9 @@ impl Run {
     }
 }
 
+/// Where runs are is noted for every so many pixels.
+const STEP: usize = 256;
+
 /// The runs of a raster in their order, none on its border. Pixels in no run have the number 0.
 pub struct Runs {
     pub width: usize,
@@ -46,18 +49,18 @@ impl Runs {
             joins
         });
         runs.shrink_to_fit();
-        let mut index = Vec::with_capacity(pixels / WORD + 1);
+        let mut index = Vec::with_capacity(pixels / STEP + 1);
         for (n, run) in runs.iter().enumerate() {
             // All pixels up to this run's last are in no earlier one.
-            index.resize((run.to as usize - 1) / WORD + 1, n as u32);
+            index.resize((run.to as usize - 1) / STEP + 1, n as u32);
         }
-        index.resize(pixels / WORD + 1, runs.len() as u32);
+        index.resize(pixels / STEP + 1, runs.len() as u32);
         Self { width, all: runs, index }
     }
 
     /// A pixel's number.
     pub fn at(&self, pixel: usize) -> u32 {
-        let first = self.index[pixel / WORD] as usize;
+        let first = self.index[pixel / STEP] as usize;
         let run = self.all[first..].iter().find(|run| run.to as usize > pixel);
         run.filter(|run| run.from as usize <= pixel).map_or(0, |run| run.number)
     }
@@ -117,7 +120,7 @@ impl Runs {
 
     /// The same with a few pixels more; they are in ascending order and had no number.
     pub fn with(self, more: &[(usize, u32)]) -> Self {
-        let (width, pixels) = (self.width, (self.index.len() - 1) * WORD);
+        let (width, pixels) = (self.width, (self.index.len() - 1) * STEP);
         drop(self.index);
         let mut runs = self.all;
         // From the last on, so that no run is written over before it has its place.
