@@ -47,6 +47,16 @@ def cubicles() -> npt.NDArray[np.uint8]:
     return picture
 
 
+def niches_opposite() -> npt.NDArray[np.uint8]:
+    """A way of 24 m by 1.6 m and, half way along it, on either side a niche of 0.9 m by 2.4 m."""
+    picture = np.full((180, 520), 205, np.uint8)
+    picture[72:108, 18:502] = 0
+    picture[24:156, 248:270] = 0
+    picture[74:106, 20:500] = 254
+    picture[26:154, 250:268] = 254
+    return picture
+
+
 def rooms_in_line() -> npt.NDArray[np.uint8]:
     """Five rooms of 5 m by 6 m, with doors of 1.1 m in line."""
     picture = np.full((160, 560), 205, np.uint8)
@@ -86,6 +96,11 @@ def test_niches_along_a_way_are_no_aisles_and_what_lies_between_is_no_rack() -> 
     assert {label["type"] for label in survey.of_kind("junction")} == {"L", "T"}
 
 
+def test_two_niches_that_face_each_other_make_no_aisle_across_the_way_between_them() -> None:
+    (way,) = groundplan.survey(niches_opposite(), resolution=RESOLUTION).of_kind("corridor")
+    assert np.hypot(*np.subtract(*way["axis"])) == pytest.approx(24.0, abs=0.5)
+
+
 def test_rooms_with_doors_in_line_are_no_aisle() -> None:
     assert not groundplan.survey(rooms_in_line(), resolution=RESOLUTION).of_kind("corridor")
 
@@ -112,7 +127,7 @@ def test_aisles_are_not_led_on_through_the_rows_that_stand_beyond_their_ends(sha
     assert len(ends) == 2 and all(end == pytest.approx(-2.4, abs=0.5) for _, end in ends)
 
 
-@pytest.mark.parametrize(("name", "aisles", "racks"), [("radish_intel_jones_farms", 8, 0), ("textile_factory", 5, 0)])
+@pytest.mark.parametrize(("name", "aisles", "racks"), [("radish_intel_jones_farms", 7, 0), ("textile_factory", 5, 0)])
 def test_real_sites_have_the_aisles_that_a_person_counts(name: str, aisles: int, racks: int, shared: Path) -> None:
     survey = groundplan.survey(groundplan.read(shared / "maps" / f"{name}.yaml"))
     assert len(survey.of_kind("corridor")) == aisles

@@ -21,6 +21,9 @@ const SHUT: f64 = 4.5;
 /// both together for as many times and so far: or it is a niche at the other's side.
 const NICHE: (f64, f64) = (1.5, 2.5);
 const NICHES: (f64, f64) = (2.2, 4.0);
+/// Two niches face each other across a corridor where both together are less than this share of its length, the one is no
+/// less than that share of the other, neither goes on as far as both must, and both are shut.
+const FACING: f64 = 0.5;
 
 /// What the map shows without its faces.
 pub struct Sketch {
@@ -135,41 +138,62 @@ impl Plan {
     }
 }
 
-/// A strip that leads nowhere is a niche: it goes, and what met it is judged again.
+/// A strip that leads nowhere is a niche: it goes, and what met it is judged again. When none is left, so do two niches
+/// that face each other across the only corridor that they meet.
 fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeting>) {
     loop {
         let placed = placed(views, strips.iter().map(Strip::place));
         let meetings = junctions::find(views, &strips);
         let met = junctions::of_each(&meetings, strips.len());
+        let is_shut = |n: usize| (0..2).all(|side| junctions::is_shut(views, &strips[n], side));
+        let goes_on =
+            |n: usize, metres: f64, (widths, least): (f64, f64)| metres >= least.max(widths * strips[n].width());
         let leads = |n: usize| {
-            let met = met[n].iter().map(|&m| &meetings[m]);
-            let is_niche = |meeting: &Meeting| {
-                let strip = &strips[n];
-                let at = views[strip.direction].place(meeting.at)[0];
-                let reach = meeting.reach[usize::from(meeting.corridors[0] != n)];
-                let beyond = strip.length() - reach;
-                let both = strip.length() - 2.0 * reach;
-                let arm = (at - reach - strip.along[0]).max(strip.along[1] - at - reach).min(beyond);
-                let goes_on = |metres: f64, (widths, least): (f64, f64)| metres >= least.max(widths * strip.width());
-                !goes_on(arm, NICHE) && !goes_on(both, NICHES)
+            let is_niche = |&m: &usize| {
+                let [one, two] = arms(views, &strips, &meetings[m], n);
+                !goes_on(n, one.max(two).min(one + two + reach(&meetings[m], n)), NICHE)
+                    && !goes_on(n, one + two, NICHES)
             };
-            match met.clone().count() {
+            match met[n].len() {
                 0 | 1 if racks::is_within_row(&strips, &placed, n) => false,
-                0 if junctions::is_shut(views, &strips[n], 0) && junctions::is_shut(views, &strips[n], 1) => {
-                    strips[n].length() >= SHUT * strips[n].width()
-                }
+                0 if is_shut(n) => strips[n].length() >= SHUT * strips[n].width(),
                 0 => strips[n].length() >= ALONE.1.max(ALONE.0 * strips[n].width()),
-                1 => !met.clone().any(is_niche),
+                1 => !met[n].iter().any(is_niche),
                 _ => true,
             }
         };
-        let stays: Vec<bool> = (0..strips.len()).map(leads).collect();
-        if stays.iter().all(|&s| s) {
+        let faces = |n: usize| {
+            let &[m] = &met[n][..] else { return false };
+            let [one, two] = arms(views, &strips, &meetings[m], n);
+            let others = meetings[m].corridors.iter().filter(|&&other| other != n);
+            let longest = others.map(|&other| strips[other].length()).fold(0.0, f64::max);
+            strips[n].length() < FACING * longest
+                && one.min(two) >= FACING * one.max(two)
+                && one.max(two) < NICHES.1
+                && is_shut(n)
+        };
+        let mut stays: Vec<bool> = (0..strips.len()).map(leads).collect();
+        if !stays.contains(&false) {
+            stays = (0..strips.len()).map(|n| !faces(n)).collect();
+        }
+        if !stays.contains(&false) {
             return (strips, meetings);
         }
         let mut flags = stays.into_iter();
         strips.retain(|_| flags.next().unwrap_or(false));
     }
+}
+
+/// Half of a strip's piece within a junction, metres along the strip.
+fn reach(meeting: &Meeting, n: usize) -> f64 {
+    meeting.reach[usize::from(meeting.corridors[0] != n)]
+}
+
+/// How far a strip goes on beyond a junction on either side, metres.
+fn arms(views: &[Turned], strips: &[Strip], meeting: &Meeting, n: usize) -> [f64; 2] {
+    let (strip, reach) = (&strips[n], reach(meeting, n));
+    let at = views[strip.direction].place(meeting.at)[0];
+    [at - reach - strip.along[0], strip.along[1] - at - reach]
 }
 
 /// Where each corridor begins and ends, along: its walled part, and the middle of the junction at each end that it has
