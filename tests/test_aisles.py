@@ -83,6 +83,25 @@ def aisle_past_a_hall() -> npt.NDArray[np.uint8]:
     return picture
 
 
+def past_goods() -> npt.NDArray[np.uint8]:
+    """A way of 4.4 m between walls for 11 m that goes on for 20 m, 3 m wide or more, between goods at any depth."""
+    draws = np.random.default_rng(3)
+    picture = np.full((240, 660), 205, np.uint8)
+    picture[74:166, 18:242] = 0
+    picture[20:220, 240:640] = 254
+    picture[76:164, 20:242] = 254
+    for side in (-1, 1):
+        x = 272
+        while x < 630:
+            width = int(draws.integers(14, 30))
+            near, far = 120 + side * int(draws.integers(30, 60)), 120 + side * 102
+            picture[min(near, far) : max(near, far), x : x + width] = 205
+            picture[min(near, far) : max(near, far), [x, min(x + width, 639)]] = 0
+            picture[near - 1 : near + 1, x : x + width] = 0
+            x += width + int(draws.integers(4, 14))
+    return picture
+
+
 @pytest.mark.parametrize("gap", [8, 14])
 def test_ways_between_rows_of_machines_are_aisles(gap: int) -> None:
     aisles = groundplan.survey(between_machines(gap), resolution=RESOLUTION).of_kind("corridor")
@@ -108,6 +127,11 @@ def test_rooms_with_doors_in_line_are_no_aisle() -> None:
 def test_an_aisle_that_goes_on_past_a_hall_is_one_aisle() -> None:
     (aisle,) = groundplan.survey(aisle_past_a_hall(), resolution=RESOLUTION).of_kind("corridor")
     assert np.hypot(*np.subtract(*aisle["axis"])) == pytest.approx(36.0, abs=0.5)
+
+
+def test_an_aisle_between_walls_that_goes_on_between_goods_is_one_aisle() -> None:
+    (aisle,) = groundplan.survey(past_goods(), resolution=RESOLUTION).of_kind("corridor")
+    assert np.hypot(*np.subtract(*aisle["axis"])) == pytest.approx(31.0, abs=0.6)
 
 
 def test_an_aisle_beyond_a_crossing_is_one_though_half_of_its_wall_was_seen(shared: Path) -> None:

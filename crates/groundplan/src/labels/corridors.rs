@@ -27,6 +27,8 @@ pub struct Strip {
     pub score: f64,
     /// It may be a row of empty bays, unless the rows that it crosses say otherwise.
     pub bays: bool,
+    /// Its sides are no lines, and stand back from it.
+    pub is_ragged: bool,
 }
 
 impl Strip {
@@ -352,6 +354,7 @@ impl<'a> Family<'a> {
             across,
             score: scores[from..to].iter().sum::<f64>() * view.cell,
             bays: self.is_like_bays(&columns[from..to], width),
+            is_ragged: false,
         };
         let long =
             |(from, to): &(usize, usize)| (to - from) as f64 * view.cell >= self.parameters.labels_min_aspect * width;

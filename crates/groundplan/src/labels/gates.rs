@@ -194,6 +194,7 @@ fn strip(view: &Turned, other: &Turned, row: &Row, [from, to]: [f64; 2], middles
         across: [t - width / 2.0, t + width / 2.0],
         score: row.across[1] - row.across[0],
         bays: false,
+        is_ragged: false,
     }
 }
 

@@ -6,9 +6,11 @@ use super::corridors::Strip;
 use super::turned::Turned;
 use crate::sets::Sets;
 
-/// Pieces share so much of the narrower one's width, which is so much of the wider one's.
+/// Pieces share so much of the narrower one's width, which is so much of the wider one's, or where goods stand along one
+/// of them at any depth, so much.
 const SHARED: f64 = 0.7;
 const ALIKE: f64 = 0.7;
+const ALIKE_RAGGED: f64 = 0.5;
 /// No two are further apart than so many of the widths that they share, nor than the shorter one is long.
 const APART: f64 = 3.0;
 /// Between them the floor is free but for this share.
@@ -37,8 +39,9 @@ pub fn join(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
             let across = shared(&strips[a], &strips[b]);
             let (along, score) = ([strips[a].along[0], strips[b].along[1]], strips[a].score + strips[b].score);
             let bays = strips[a].bays && strips[b].bays;
+            let is_ragged = strips[a].is_ragged || strips[b].is_ragged;
             let direction = strips[a].direction;
-            strips[a] = Strip { direction, along, across, score, bays };
+            strips[a] = Strip { direction, along, across, score, bays, is_ragged };
             placed[direction].add(a, along, across);
             wholes.join(a as u32, b as u32);
         }
@@ -64,7 +67,8 @@ fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], [a, b]: [usize;
     }
     let [low, high] = shared(one, two);
     let (narrow, wide) = (one.width().min(two.width()), one.width().max(two.width()));
-    if high - low < SHARED * narrow || narrow < ALIKE * wide || gap > APART * (high - low) {
+    let alike = if one.is_ragged || two.is_ragged { ALIKE_RAGGED } else { ALIKE };
+    if high - low < SHARED * narrow || narrow < alike * wide || gap > APART * (high - low) {
         return false;
     }
     let is_between = |other: &Strip| {

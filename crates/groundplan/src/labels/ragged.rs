@@ -261,6 +261,7 @@ impl<'a> Candidate<'a> {
                     across: self.across,
                     score: columns.scores[from..to].iter().sum::<i64>() as f64 / FULL as f64 * view.cell * width,
                     bays: false,
+                    is_ragged: true,
                 },
             ));
         }
