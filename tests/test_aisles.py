@@ -102,6 +102,21 @@ def past_goods() -> npt.NDArray[np.uint8]:
     return picture
 
 
+def long_racks() -> npt.NDArray[np.uint8]:
+    """A hall of 20 m by 26 m with pillars along its walls every 4 m, and in it three racks of 15 m by 1 m, 7 m apart,
+    that end 4 m and 7 m before the walls."""
+    picture = np.full((560, 440), 205, np.uint8)
+    picture[18:542, 18:422] = 0
+    picture[20:540, 20:420] = 254
+    for y in range(60, 540, 80):
+        for x in (20, 412):
+            picture[y : y + 8, x : x + 8] = 0
+            picture[y + 1 : y + 7, x + 1 : x + 7] = 205
+    for x in (46, 206, 366):
+        picture[100:400, x : x + 20] = 0
+    return picture
+
+
 @pytest.mark.parametrize("gap", [8, 14])
 def test_ways_between_rows_of_machines_are_aisles(gap: int) -> None:
     aisles = groundplan.survey(between_machines(gap), resolution=RESOLUTION).of_kind("corridor")
@@ -127,6 +142,17 @@ def test_rooms_with_doors_in_line_are_no_aisle() -> None:
 def test_an_aisle_that_goes_on_past_a_hall_is_one_aisle() -> None:
     (aisle,) = groundplan.survey(aisle_past_a_hall(), resolution=RESOLUTION).of_kind("corridor")
     assert np.hypot(*np.subtract(*aisle["axis"])) == pytest.approx(36.0, abs=0.5)
+
+
+def test_wide_aisles_end_with_their_racks_where_pillars_at_the_walls_recur() -> None:
+    wide = [
+        aisle
+        for aisle in groundplan.survey(long_racks(), resolution=RESOLUTION).of_kind("corridor")
+        if aisle["width"] > 6.0
+    ]
+    assert len(wide) == 2
+    for aisle in wide:
+        assert sorted(end[1] for end in aisle["axis"]) == pytest.approx([8.0, 23.0], abs=0.3)
 
 
 def test_an_aisle_between_walls_that_goes_on_between_goods_is_one_aisle() -> None:

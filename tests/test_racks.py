@@ -75,7 +75,7 @@ def test_walls_that_end_in_a_room_are_no_racks() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "count", "length"), [("isaac_iw_hub_warehouse", 2, 16.2), ("svl_warehouse", 10, 14.6)]
+    ("name", "count", "length"), [("isaac_iw_hub_warehouse", 3, 16.4), ("svl_warehouse", 10, 14.6)]
 )
 def test_the_racks_of_maps_of_others_are_of_one_depth_and_length(
     name: str, count: int, length: float, shared: Path

@@ -29,6 +29,8 @@ pub struct Strip {
     pub bays: bool,
     /// Its sides are no lines, and stand back from it.
     pub is_ragged: bool,
+    /// Where it begins and ends without what lies beyond a gap longer than a bay and is no more than a speck, along.
+    pub held: [f64; 2],
 }
 
 impl Strip {
@@ -355,11 +357,37 @@ impl<'a> Family<'a> {
             score: scores[from..to].iter().sum::<f64>() * view.cell,
             bays: self.is_like_bays(&columns[from..to], width),
             is_ragged: false,
+            held: self.held(&columns[from..to]).map(|column| view.along(first + from + column)),
         };
         let long =
             |(from, to): &(usize, usize)| (to - from) as f64 * view.cell >= self.parameters.labels_min_aspect * width;
         let judged = |(from, to)| (strip((from, to)), self.is_corridor(&columns[from..to], width));
         pieces.filter(long).map(judged).collect()
+    }
+
+    /// The first column of a piece, and that after its last one, without what lies beyond gaps longer than a bay and is
+    /// no more than a speck, or nothing: a wall at which a row ends that seems to go on as over a missing post.
+    fn held(&self, columns: &[Column]) -> [usize; 2] {
+        let cells = |metres: f64| (metres / self.view.cell) as usize;
+        let near: Vec<bool> = columns.iter().map(|column| column.near).collect();
+        let mut runs = &runs(&near, true)[..];
+        let is_speck = |run: &(usize, usize)| run.1 - run.0 <= cells(BAY / 2.0);
+        while let [first, next, ..] = runs
+            && is_speck(first)
+            && next.0 - first.1 > cells(BAY)
+        {
+            runs = &runs[1..];
+        }
+        while let [.., next, last] = runs
+            && is_speck(last)
+            && last.0 - next.1 > cells(BAY)
+        {
+            runs = &runs[..runs.len() - 1];
+        }
+        let count = columns.len();
+        let from = runs.first().map_or(0, |first| first.0);
+        let to = runs.last().map_or(count, |last| last.1);
+        [if from > cells(BAY) { from } else { 0 }, if count - to > cells(BAY) { to } else { count }]
     }
 
     /// As wide as a bay, and walled no better than a row of empty ones.

@@ -195,6 +195,7 @@ fn strip(view: &Turned, other: &Turned, row: &Row, [from, to]: [f64; 2], middles
         score: row.across[1] - row.across[0],
         bays: false,
         is_ragged: false,
+        held: [f64::NEG_INFINITY, f64::INFINITY],
     }
 }
 

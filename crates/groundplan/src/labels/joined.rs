@@ -40,8 +40,9 @@ pub fn join(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
             let (along, score) = ([strips[a].along[0], strips[b].along[1]], strips[a].score + strips[b].score);
             let bays = strips[a].bays && strips[b].bays;
             let is_ragged = strips[a].is_ragged || strips[b].is_ragged;
+            let held = [strips[a].held[0], strips[b].held[1]];
             let direction = strips[a].direction;
-            strips[a] = Strip { direction, along, across, score, bays, is_ragged };
+            strips[a] = Strip { direction, along, across, score, bays, is_ragged, held };
             placed[direction].add(a, along, across);
             wholes.join(a as u32, b as u32);
         }

@@ -262,6 +262,7 @@ impl<'a> Candidate<'a> {
                     score: columns.scores[from..to].iter().sum::<i64>() as f64 / FULL as f64 * view.cell * width,
                     bays: false,
                     is_ragged: true,
+                    held: [f64::NEG_INFINITY, f64::INFINITY],
                 },
             ));
         }

@@ -179,6 +179,18 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
         if !stays.contains(&false) {
             return (strips, meetings);
         }
+        // What is shut may be so by walls that its sides do not reach: then it is judged anew without the way to them.
+        let shorter = |n: usize| {
+            let Strip { along, held, .. } = strips[n];
+            let short = [along[0].max(held[0]), along[1].min(held[1])];
+            let is_so = !stays[n] && met[n].is_empty() && short != along && short[0] < short[1] && is_shut(n);
+            is_so.then_some((n, short))
+        };
+        let shorter: Vec<_> = (0..strips.len()).filter_map(shorter).collect();
+        for (n, short) in shorter {
+            strips[n].along = short;
+            stays[n] = true;
+        }
         let mut flags = stays.into_iter();
         strips.retain(|_| flags.next().unwrap_or(false));
     }
