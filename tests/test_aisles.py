@@ -117,6 +117,17 @@ def long_racks() -> npt.NDArray[np.uint8]:
     return picture
 
 
+def shelves_at_a_wall(count: int) -> npt.NDArray[np.uint8]:
+    """A hall of 14 m by 20 m and at its wall so many shelves of 4 m by 0.9 m, 0.95 m apart."""
+    picture = np.full((440, 320), 205, np.uint8)
+    picture[18:422, 18:302] = 0
+    picture[20:420, 20:300] = 254
+    for n in range(count):
+        y = 120 + 37 * n
+        picture[y : y + 18, 216:296] = 0
+    return picture
+
+
 @pytest.mark.parametrize("gap", [8, 14])
 def test_ways_between_rows_of_machines_are_aisles(gap: int) -> None:
     aisles = groundplan.survey(between_machines(gap), resolution=RESOLUTION).of_kind("corridor")
@@ -153,6 +164,12 @@ def test_wide_aisles_end_with_their_racks_where_pillars_at_the_walls_recur() -> 
     assert len(wide) == 2
     for aisle in wide:
         assert sorted(end[1] for end in aisle["axis"]) == pytest.approx([8.0, 23.0], abs=0.3)
+
+
+@pytest.mark.parametrize(("shelves", "aisles"), [(2, 0), (6, 5)])
+def test_short_ways_into_a_hall_are_aisles_where_several_lie_side_by_side(shelves: int, aisles: int) -> None:
+    survey = groundplan.survey(shelves_at_a_wall(shelves), resolution=RESOLUTION)
+    assert len(survey.of_kind("corridor")) == aisles
 
 
 def test_an_aisle_between_walls_that_goes_on_between_goods_is_one_aisle() -> None:

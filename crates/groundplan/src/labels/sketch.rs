@@ -1,7 +1,7 @@
 //! II-E before the map is divided into faces: corridors first, junctions where they meet, rows between them, and all
 //! that may be a door.
 
-use super::beside::placed;
+use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
 use super::gates;
 use super::joined;
@@ -15,6 +15,11 @@ use crate::bands::{Later, Side, each, map_each};
 
 /// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
 const ALONE: (f64, f64) = (2.0, 5.0);
+/// Or so long where so many others run beside it that are as wide and as long but for this share, with no more than a
+/// rack between one and the next.
+const RECURS: f64 = 3.5;
+const OTHERS: usize = 2;
+const ALIKE: f64 = 0.2;
 /// And one that is shut at both its ends, be it with a door, so many times: less is a room.
 const SHUT: f64 = 4.5;
 /// A corridor that meets one other goes on beyond it, on one side for so many times its width and so far, metres, or on
@@ -157,7 +162,8 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
             match met[n].len() {
                 0 | 1 if racks::is_within_row(&strips, &placed, n) => false,
                 0 if is_shut(n) => strips[n].length() >= SHUT * strips[n].width(),
-                0 => strips[n].length() >= ALONE.1.max(ALONE.0 * strips[n].width()),
+                0 if strips[n].length() >= ALONE.1.max(ALONE.0 * strips[n].width()) => true,
+                0 => strips[n].length() >= RECURS.max(ALONE.0 * strips[n].width()) && recurs(&strips, &placed, n),
                 1 => !met[n].iter().any(is_niche),
                 _ => true,
             }
@@ -194,6 +200,28 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
         let mut flags = stays.into_iter();
         strips.retain(|_| flags.next().unwrap_or(false));
     }
+}
+
+/// True when others that are alike run beside a strip, one after another.
+fn recurs(strips: &[Strip], placed: &[Beside], n: usize) -> bool {
+    let own = &strips[n];
+    let alike = |one: f64, two: f64| (one - two).abs() <= ALIKE * one.max(two);
+    let is_like = |other: &&Strip| {
+        let shared = own.along[1].min(other.along[1]) - own.along[0].max(other.along[0]);
+        other.direction == own.direction
+            && alike(own.width(), other.width())
+            && shared >= (1.0 - ALIKE) * own.length().max(other.length())
+    };
+    let near = own.width() + racks::DEPTH.1;
+    let reach = OTHERS as f64 * near;
+    let around = placed[own.direction].touching(own.along, [own.middle() - reach, own.middle() + reach]);
+    let mut middles: Vec<f64> = around.iter().map(|&m| &strips[m]).filter(is_like).map(Strip::middle).collect();
+    middles.sort_by(f64::total_cmp);
+    let at = middles.partition_point(|&middle| middle < own.middle());
+    let is_next = |pair: &&[f64]| pair[1] - pair[0] <= near;
+    let above = middles[at..].windows(2).take_while(is_next).count();
+    let below = middles[..(at + 1).min(middles.len())].windows(2).rev().take_while(is_next).count();
+    above + below >= OTHERS
 }
 
 /// Half of a strip's piece within a junction, metres along the strip.
