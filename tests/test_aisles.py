@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+import shapely
 
 import groundplan
 
@@ -128,6 +129,19 @@ def shelves_at_a_wall(count: int) -> npt.NDArray[np.uint8]:
     return picture
 
 
+def docks() -> npt.NDArray[np.uint8]:
+    """A hall of 22 m by 12 m with docks of 4.3 m at one side, walls of 2.2 m between them, and pallets before them."""
+    picture = np.full((280, 480), 205, np.uint8)
+    picture[18:262, 18:462] = 0
+    picture[20:260, 20:460] = 254
+    for x in range(106, 450, 88):
+        picture[216:260, x : x + 3] = 0
+    for x in (110, 170, 330, 380):
+        picture[140:176, x : x + 36] = 0
+        picture[142:174, x + 2 : x + 34] = 205
+    return picture
+
+
 @pytest.mark.parametrize("gap", [8, 14])
 def test_ways_between_rows_of_machines_are_aisles(gap: int) -> None:
     aisles = groundplan.survey(between_machines(gap), resolution=RESOLUTION).of_kind("corridor")
@@ -170,6 +184,12 @@ def test_wide_aisles_end_with_their_racks_where_pillars_at_the_walls_recur() -> 
 def test_short_ways_into_a_hall_are_aisles_where_several_lie_side_by_side(shelves: int, aisles: int) -> None:
     survey = groundplan.survey(shelves_at_a_wall(shelves), resolution=RESOLUTION)
     assert len(survey.of_kind("corridor")) == aisles
+
+
+def test_no_aisle_leads_along_docks_through_the_walls_between_them() -> None:
+    aisles = groundplan.survey(docks(), resolution=RESOLUTION).of_kind("corridor")
+    walls = [shapely.box(x, 1.5, x + 0.15, 2.5) for x in np.arange(5.3, 22.0, 4.4)]
+    assert not any(shapely.Polygon(aisle["polygon"]).intersects(wall) for aisle in aisles for wall in walls)
 
 
 def test_an_aisle_between_walls_that_goes_on_between_goods_is_one_aisle() -> None:

@@ -8,6 +8,11 @@ use std::ops::Range;
 const BARRED: f64 = 0.55;
 /// And is no thicker than this, metres: what is thicker stands in the way, and one passes by.
 const THICK: f64 = 0.8;
+/// A wall between two docks, which parts a strip along them, bars more than this share of it, is so long and no thicker
+/// than this, metres.
+const DOCK: f64 = 0.4;
+const LONG: f64 = 1.5;
+const THIN: f64 = 0.5;
 /// And leaves free no more than a door, metres.
 const DOOR: f64 = 2.5;
 /// A wall with a door in it bars more than this share of what lies beside the strip, on both sides.
@@ -21,24 +26,32 @@ const GETS_THROUGH: f64 = 0.35;
 /// The columns of a strip in which such a wall stands.
 pub fn across(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
     let (low, high) = (across[0] + MARGIN, across[1] - MARGIN);
-    let is_door = |barred: f64| barred > BARRED && (1.0 - barred) * (high - low) <= DOOR;
-    thin(view, view.some_barred(range, low, high).into_iter().map(is_door).collect())
+    let is_door = |barred: &f64| *barred > BARRED && (1.0 - barred) * (high - low) <= DOOR;
+    thin(view, THICK, view.some_barred(range, low, high).iter().map(is_door).collect())
+}
+
+/// The columns of a strip in which a wall between two docks stands.
+fn docks(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
+    let (low, high) = (across[0] + MARGIN, across[1] - MARGIN);
+    let least = DOCK.max(LONG / (high - low).max(view.cell));
+    let is_wall = |barred: &f64| *barred > least && (1.0 - barred) * (high - low) <= DOOR;
+    thin(view, THIN, view.some_barred(range, low, high).iter().map(is_wall).collect())
 }
 
 /// The columns in which such a wall stands on both sides of a strip, which leads through a door in it.
 pub fn doors(view: &Turned, sides: [[f64; 2]; 2], range: Range<usize>) -> Vec<bool> {
     let [one, two] = sides.map(|[low, high]| view.some_barred(range.clone(), low, high));
-    thin(view, one.into_iter().zip(two).map(|(one, two)| one.min(two) > BESIDE).collect())
+    thin(view, THICK, one.into_iter().zip(two).map(|(one, two)| one.min(two) > BESIDE).collect())
 }
 
-/// Columns of the thickest wall.
-fn thickest(view: &Turned) -> usize {
-    (THICK / view.cell).ceil() as usize
+/// Columns of what is so thick, metres.
+fn columns(view: &Turned, thick: f64) -> usize {
+    (thick / view.cell).ceil() as usize
 }
 
-/// Flags without runs that are thicker than a wall.
-fn thin(view: &Turned, mut flags: Vec<bool>) -> Vec<bool> {
-    let longest = thickest(view);
+/// Flags without runs that are thicker than so much, metres.
+fn thin(view: &Turned, thickest: f64, mut flags: Vec<bool>) -> Vec<bool> {
+    let longest = columns(view, thickest);
     for (from, to) in runs(&flags, true) {
         if to - from > longest {
             flags[from..to].fill(false);
@@ -47,13 +60,15 @@ fn thin(view: &Turned, mut flags: Vec<bool>) -> Vec<bool> {
     flags
 }
 
-/// [`across`] of some columns, as they are among all.
+/// [`across`] of some columns, and walls between docks, as they are among all.
 pub fn among(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
     // What is thicker beyond the range is no wall within it.
-    let more = thickest(view) + 1;
+    let more = columns(view, THICK) + 1;
     let wider = range.start.saturating_sub(more)..(range.end + more).min(view.size[0]);
     let first = range.start - wider.start;
-    self::across(view, across, wider)[first..first + range.len()].to_vec()
+    let docks = docks(view, across, wider.clone());
+    let walls = self::across(view, across, wider).into_iter().zip(docks).map(|(wall, dock)| wall || dock);
+    walls.skip(first).take(range.len()).collect()
 }
 
 /// Where a square of a share of the strip's width, which never turns back, gets no further along it: a wall askew to
