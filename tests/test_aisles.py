@@ -142,6 +142,20 @@ def docks() -> npt.NDArray[np.uint8]:
     return picture
 
 
+def racks_in_the_open() -> npt.NDArray[np.uint8]:
+    """A hall of 30 m by 40 m with three racks of 18 m along its left wall, and beyond their ends eight of 4 m across, in
+    two columns of which the first stands 8 m off that wall."""
+    picture = np.full((840, 640), 205, np.uint8)
+    picture[18:822, 18:622] = 0
+    picture[20:820, 20:620] = 254
+    for x in (104, 224, 344):
+        picture[410:770, x : x + 40] = 0
+    for y in (160, 220, 280, 340):
+        for x in (184, 384):
+            picture[y : y + 12, x : x + 76] = 0
+    return picture
+
+
 @pytest.mark.parametrize("gap", [8, 14])
 def test_ways_between_rows_of_machines_are_aisles(gap: int) -> None:
     aisles = groundplan.survey(between_machines(gap), resolution=RESOLUTION).of_kind("corridor")
@@ -190,6 +204,13 @@ def test_no_aisle_leads_along_docks_through_the_walls_between_them() -> None:
     aisles = groundplan.survey(docks(), resolution=RESOLUTION).of_kind("corridor")
     walls = [shapely.box(x, 1.5, x + 0.15, 2.5) for x in np.arange(5.3, 22.0, 4.4)]
     assert not any(shapely.Polygon(aisle["polygon"]).intersects(wall) for aisle in aisles for wall in walls)
+
+
+def test_ways_between_racks_in_the_open_end_with_them_and_not_at_a_wall_far_off() -> None:
+    aisles = groundplan.survey(racks_in_the_open(), resolution=RESOLUTION).of_kind("corridor")
+    north = [aisle for aisle in aisles if min(end[1] for end in aisle["axis"]) > 24.0]
+    assert len(north) == 3
+    assert all(min(end[0] for end in aisle["axis"]) > 8.0 for aisle in north)
 
 
 def test_an_aisle_between_walls_that_goes_on_between_goods_is_one_aisle() -> None:

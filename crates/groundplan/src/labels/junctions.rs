@@ -43,6 +43,8 @@ const ARM: (f64, f64) = (1.6, 0.65);
 const MARGIN: f64 = 0.2;
 /// A corridor that ends this far short of another still meets it, metres, when the way between is free.
 const SHORT: f64 = 6.0;
+/// But not where both lack sides for so long before they meet, metres, and no walls make a corner there.
+const OPEN: f64 = 3.0;
 /// Nothing stands in the way where no more than this share of a column is not free, without so much at the sides,
 /// metres.
 const CLUTTER: f64 = 0.33;
@@ -200,6 +202,7 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
     let at = [(m1 * c2 - m2 * c1) / sine, (m1 * s2 - m2 * s1) / sine];
     let mut ways = Vec::new();
     let mut reach = [0.0; 2];
+    let (mut led_on, mut shut) = ([false; 2], [false; 2]);
     let mut legs = [Leg { beyond: [0.0; 2], ends: [false; 2], is_clear: true }; 2];
     for (n, (strip, other, view)) in [(one, two, first), (two, one, second)].into_iter().enumerate() {
         let u = view.place(at)[0];
@@ -229,6 +232,11 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
             return None;
         }
         legs[n].beyond = [strip.along[0] - u, u - strip.along[1]];
+        let short = [strip.held[0] - u, u - strip.held[1]];
+        let side = usize::from(short[1] > short[0]);
+        led_on[n] = short[side] - reach[n] > OPEN;
+        let there = Strip { along: [u, u], ..strip.clone() };
+        shut[n] = led_on[n] && closed(view, &there, side, reach[n] + LOOK).is_some();
         for (side, heading) in [(0, view.angle + std::f64::consts::PI), (1, view.angle)] {
             if goes_on(view, strip, side, -legs[n].beyond[side] - reach[n]) {
                 ways.push(heading);
@@ -236,6 +244,10 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
                 legs[n].ends[side] = true;
             }
         }
+    }
+    // Where neither has sides there, walls make the corner, or it is a place in a hall.
+    if led_on == [true; 2] && shut != [true; 2] {
+        return None;
     }
     Some(Meeting { kind: JunctionKind::X, at, corridors: pair.to_vec(), reach, ways, legs })
 }
