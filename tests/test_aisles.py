@@ -143,8 +143,8 @@ def docks() -> npt.NDArray[np.uint8]:
 
 
 def racks_in_the_open() -> npt.NDArray[np.uint8]:
-    """A hall of 30 m by 40 m with three racks of 18 m along its left wall, and beyond their ends eight of 4 m across, in
-    two columns of which the first stands 8 m off that wall."""
+    """A hall of 30 m by 40 m with three racks of 18 m along its left wall, and beyond their ends eight of 4 m across,
+    in two columns of which the first stands 8 m off that wall."""
     picture = np.full((840, 640), 205, np.uint8)
     picture[18:822, 18:622] = 0
     picture[20:820, 20:620] = 254
