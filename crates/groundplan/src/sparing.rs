@@ -2,7 +2,7 @@
 //! needs it any more. What is small against the time that it takes to find it is kept, all else is found again.
 
 use crate::adjacency::Adjacency;
-use crate::arrangement::arrange;
+use crate::arrangement::{Arrangement, arrange};
 use crate::bands::side_by_side;
 use crate::coverage::Coverage;
 use crate::gradients::{Gradients, find_gradients_in};
@@ -13,7 +13,7 @@ use crate::parameters::Parameters;
 use crate::subdivision::Subdivision;
 use crate::sums::FaceSums;
 use crate::survey::{Given, Structure, Survey};
-use crate::walls::find_walls;
+use crate::walls::{disparities, trace_walls};
 use std::borrow::Cow;
 
 /// Maps of more pixels than this are surveyed so.
@@ -68,7 +68,10 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
     let occupancy = {
         let sums = summed(&arrangement);
         // Walls are found from the edges alone.
-        (arrangement.face_halves, arrangement.rows_below) = (Vec::new(), Vec::new());
+        let Arrangement { face_halves, face_offsets, edge_lines, rows_below, .. } = &mut arrangement;
+        for list in [face_halves, face_offsets, edge_lines, rows_below] {
+            *list = Vec::new();
+        }
         Occupancy::of_faces(&sums)
     };
     let Structure { gradients, directions, radiograms, lines } = structure;
@@ -79,7 +82,13 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
     }
     let covered = coverage.of_edges(&arrangement);
     let occupancy = occupancy.with(covered);
-    let walls = find_walls(&Subdivision::of_edges(frame, arrangement, threads), &occupancy, parameters);
+    let edges = (0..).zip(&arrangement.line_edges).filter(|(_, edges)| !edges.is_empty());
+    let edges: Vec<_> = edges.map(|(line, edges)| (line, edges.start as usize..edges.end as usize)).collect();
+    let mut subdivision = Subdivision::of_edges(frame, arrangement, threads);
+    let mut walls = trace_walls(&subdivision, &edges, &occupancy, parameters);
+    let edge_faces = std::mem::take(&mut subdivision.edge_faces);
+    drop(subdivision);
+    walls.disparity = disparities(&edge_faces, &occupancy);
     let survey = Survey {
         memory: Memory::default(),
         patterns: find_patterns(&directions, &labels),

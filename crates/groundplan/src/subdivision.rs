@@ -83,16 +83,10 @@ impl Subdivision {
         }
     }
 
-    /// Without the lists of the faces: what walls are found from.
+    /// Without the lists of the faces and the edges' lines: what walls are traced from.
     pub(crate) fn of_edges(frame: &Frame, arrangement: Arrangement, threads: usize) -> Self {
-        let Arrangement { vertices, edges, edge_lines, edge_faces, .. } = arrangement;
-        Self {
-            vertices: in_metres(frame, vertices, threads),
-            edge_vertices: edges,
-            edge_lines,
-            edge_faces,
-            ..Self::default()
-        }
+        let Arrangement { vertices, edges, edge_faces, .. } = arrangement;
+        Self { vertices: in_metres(frame, vertices, threads), edge_vertices: edges, edge_faces, ..Self::default() }
     }
 
     /// Number of faces.

@@ -5,6 +5,7 @@ use crate::grid::{State, tidy};
 use crate::occupancy::Occupancy;
 use crate::parameters::Parameters;
 use crate::subdivision::Subdivision;
+use std::ops::Range;
 
 /// Metres in the map frame.
 type Point = [f64; 2];
@@ -47,11 +48,39 @@ const LEAST_OCCUPANCY_AT_FRONTIER: f64 = 0.2;
 /// C(edge) = |O(f1) - O(f2)| > t1 or O(edge) > t2.
 #[must_use]
 pub fn find_walls(subdivision: &Subdivision, occupancy: &Occupancy, parameters: &Parameters) -> Walls {
+    let disparity = disparities(&subdivision.edge_faces, occupancy);
+    Walls { disparity, ..trace_walls(subdivision, &edges_of_lines(subdivision), occupancy, parameters) }
+}
+
+/// The edges of a line follow one another; those of the border come last.
+fn edges_of_lines(subdivision: &Subdivision) -> Vec<(u32, Range<usize>)> {
+    let mut first = 0;
+    let lines = subdivision.edge_lines.chunk_by(|a, b| a == b).map(|edges| {
+        let own = first..first + edges.len();
+        first = own.end;
+        (edges[0], own)
+    });
+    lines.filter(|(line, _)| *line != NONE).collect()
+}
+
+/// |O(f1) - O(f2)| of each edge, 0 on the border.
+pub(crate) fn disparities(edge_faces: &[[u32; 2]], occupancy: &Occupancy) -> Vec<f64> {
+    edge_faces.iter().map(|&faces| disparity(faces, occupancy)).collect()
+}
+
+fn disparity([l, r]: [u32; 2], occupancy: &Occupancy) -> f64 {
+    if l == NONE || r == NONE { 0.0 } else { tidy((occupancy.faces[l as usize] - occupancy.faces[r as usize]).abs()) }
+}
+
+/// The same without the disparities, from lines and the edges of each.
+pub(crate) fn trace_walls(
+    subdivision: &Subdivision,
+    lines: &[(u32, Range<usize>)],
+    occupancy: &Occupancy,
+    parameters: &Parameters,
+) -> Walls {
     let edges = 0..subdivision.edge_faces.len();
-    let disparity = |e: usize| match subdivision.edge_faces[e] {
-        [l, r] if l == NONE || r == NONE => 0.0,
-        [l, r] => tidy((occupancy.faces[l as usize] - occupancy.faces[r as usize]).abs()),
-    };
+    let disparity = |e: usize| disparity(subdivision.edge_faces[e], occupancy);
     let inner = |e: usize| !subdivision.edge_faces[e].contains(&NONE);
     let cogent: Vec<bool> = edges
         .clone()
@@ -72,15 +101,16 @@ pub fn find_walls(subdivision: &Subdivision, occupancy: &Occupancy, parameters: 
             Some(WallKind::Freestanding)
         }
     };
-    let kinds: Vec<Option<WallKind>> = edges.clone().map(kind).collect();
+    let kinds: Vec<Option<WallKind>> = edges.map(kind).collect();
     let min_opening = parameters.walls_min_opening + SAME;
-    let walls = Evidence { subdivision, occupancy, kinds: &kinds, min_opening }.walls();
-    Walls { walls, cogent, disparity: edges.map(disparity).collect() }
+    let walls = Evidence { subdivision, lines, occupancy, kinds: &kinds, min_opening }.walls();
+    Walls { walls, cogent, disparity: Vec::new() }
 }
 
 /// What the walls are traced from.
 struct Evidence<'a> {
     subdivision: &'a Subdivision,
+    lines: &'a [(u32, Range<usize>)],
     occupancy: &'a Occupancy,
     /// Of the cogent edges.
     kinds: &'a [Option<WallKind>],
@@ -101,15 +131,9 @@ struct Run {
 
 impl Evidence<'_> {
     fn walls(&self) -> Vec<Wall> {
-        let lines = self.subdivision.edge_lines.as_slice();
         let met = self.met();
         let mut walls = Vec::new();
-        let mut first = 0;
-        // The edges of a line follow one another; those of the border come last.
-        for edges in lines.chunk_by(|a, b| a == b).filter(|edges| edges[0] != NONE) {
-            let edges = first..first + edges.len();
-            first = edges.end;
-            let line = lines[edges.start];
+        for (line, edges) in self.lines.iter().cloned() {
             let crossings: Vec<Point> = edges
                 .clone()
                 .map(|edge| self.subdivision.edge_vertices[edge][0])
@@ -132,13 +156,14 @@ impl Evidence<'_> {
     /// Two lines that have walls up to each vertex, or next to it.
     fn met(&self) -> Vec<[u32; 2]> {
         let mut met = vec![[NONE; 2]; self.subdivision.vertices.len()];
-        for edge in (0..self.kinds.len()).filter(|&edge| self.kinds[edge].is_some()) {
+        let edges = self.lines.iter().flat_map(|(line, edges)| edges.clone().map(|edge| (*line, edge)));
+        for (line, edge) in edges.filter(|(_, edge)| self.kinds[*edge].is_some()) {
             let [p, q] = self.ends(edge);
             let runs = self.occupancy.runs_of(edge);
             let (before, after) = (runs.first().map(|run| run[0]), runs.last().map(|run| distance(p, q) - run[1]));
             for (vertex, apart) in self.subdivision.edge_vertices[edge].into_iter().zip([before, after]) {
                 if apart.is_some_and(|apart| apart <= self.min_opening) {
-                    let (line, lines) = (self.subdivision.edge_lines[edge], &mut met[vertex as usize]);
+                    let lines = &mut met[vertex as usize];
                     if lines[0] == NONE {
                         lines[0] = line;
                     } else if lines[0] != line {
@@ -195,11 +220,19 @@ impl Evidence<'_> {
         }
     }
 
-    /// The crossing that a wall's first end meets another wall in, else that end.
+    /// The crossing that a wall's first end meets another wall in, else that end. The crossings follow one another along
+    /// the wall's line.
     fn corner(&self, wall: [Point; 2], crossings: &[Point]) -> Point {
+        let (Some(first), Some(last)) = (crossings.first(), crossings.last()) else { return wall[0] };
+        // How far along, as a multiple of the way from the first to the last; those near enough are a few of all.
+        let way = [0, 1].map(|axis| last[axis] - first[axis]);
+        let along = |p: &Point| way[0] * (p[0] - first[0]) + way[1] * (p[1] - first[1]);
+        let reach = 2.0 * self.min_opening * libm::hypot(way[0], way[1]);
+        let from = crossings.partition_point(|p| along(p) < along(&wall[0]) - reach);
         let apart = |p: &Point| distance(*p, wall[0]);
-        crossings
+        crossings[from..]
             .iter()
+            .take_while(|p| along(p) <= along(&wall[0]) + reach)
             .filter(|p| apart(p) <= self.min_opening && 2.0 * apart(p) < distance(wall[0], wall[1]))
             .min_by(|p, q| apart(p).total_cmp(&apart(q)))
             .map_or(wall[0], |p| *p)

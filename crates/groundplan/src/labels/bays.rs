@@ -43,6 +43,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Option<P
         let mut specks: Vec<[f64; 2]> = pitch::specks_of(evidence, view).map(|[u, v]| [v, u]).collect();
         specks.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let places: Vec<Vec<f64>> = own.iter().map(|&n| along(&rows[n], &specks)).collect();
+        drop(specks);
         let Some(common) = common(&places, evidence.threads) else { continue };
         let length = |n: usize| rows[n].along[1] - rows[n].along[0];
         let periods = map_each(own.len(), evidence.threads, |m| of_row(&places[m], common, length(own[m])));

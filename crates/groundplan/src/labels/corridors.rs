@@ -119,8 +119,9 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
     let threads = evidence.threads.div_ceil(views.len().max(1));
     let found = map_each(views.len(), evidence.threads, |n| {
         let family = Family::new(evidence, views, &views[n]);
-        let (whole, parts): (Vec<_>, Vec<_>) =
-            family.candidates(threads, evidence.recall).into_iter().partition(|c| c.is_corridor);
+        let mut parts = family.candidates(threads, evidence.recall);
+        let whole = parts.iter().filter(|c| c.is_corridor).copied().collect();
+        parts.retain(|c| !c.is_corridor);
         let mut known = family.best(whole, &[]);
         let sure: Vec<Strip> = known.iter().filter(|strip| !strip.bays).cloned().collect();
         let ragged = ragged::find(evidence, views, &views[n], &sure, threads);
@@ -178,12 +179,38 @@ struct Family<'a> {
     sides: Vec<Side>,
 }
 
-/// A strip and the two lines that it lies between.
+/// A strip between two lines, in little room: of a large map there are millions, of which few stay.
+#[derive(Clone, Copy)]
 struct Candidate {
-    strip: Strip,
-    sides: [usize; 2],
+    /// The two lines.
+    sides: [u32; 2],
+    /// From column to column.
+    columns: [u32; 2],
+    score: f64,
+    bays: bool,
     /// As a whole.
     is_corridor: bool,
+}
+
+impl Candidate {
+    fn new(view: &Turned, sides: [usize; 2], strip: &Strip, is_corridor: bool) -> Self {
+        let columns = strip.along.map(|u| view.border(u) as u32);
+        Self { sides: sides.map(|n| n as u32), columns, score: strip.score, bays: strip.bays, is_corridor }
+    }
+
+    /// Of which it is not said what of it holds.
+    fn strip(&self, view: &Turned) -> Strip {
+        let along = self.columns.map(|column| view.along(column as usize));
+        Strip {
+            direction: view.direction,
+            along,
+            across: self.sides.map(|n| view.offsets[n as usize]),
+            score: self.score,
+            bays: self.bays,
+            is_ragged: false,
+            held: along,
+        }
+    }
 }
 
 impl<'a> Family<'a> {
@@ -223,8 +250,7 @@ impl<'a> Family<'a> {
                         };
                         self.open(across).into_iter().flat_map(pieces).collect()
                     });
-                    let candidate = |(strip, is_corridor): (Strip, bool)| Candidate { strip, sides, is_corridor };
-                    found.extend(pieces.into_iter().map(candidate));
+                    found.extend(pieces.iter().map(|(strip, whole)| Candidate::new(self.view, sides, strip, *whole)));
                 }
             }
             found
@@ -244,7 +270,7 @@ impl<'a> Family<'a> {
 
     /// Of rivals the best, and what they and those that are known leave of the others.
     fn best(&self, mut candidates: Vec<Candidate>, known: &[Strip]) -> Vec<Strip> {
-        candidates.sort_by(|a, b| a.strip.bays.cmp(&b.strip.bays).then(b.strip.score.total_cmp(&a.strip.score)));
+        candidates.sort_by(|a, b| a.bays.cmp(&b.bays).then(b.score.total_cmp(&a.score)));
         let mut kept = known.to_vec();
         let mut placed = Beside::of(self.view);
         let mut next = 0;
@@ -253,13 +279,14 @@ impl<'a> Family<'a> {
                 placed.add(next, strip.along, strip.across);
                 next += 1;
             }
-            let (first, last) = self.range(&candidate.strip);
-            let left = self.left(&candidate.strip, &kept, &placed);
+            let strip = candidate.strip(self.view);
+            let (first, last) = self.range(&strip);
+            let left = self.left(&strip, &kept, &placed);
             if !left.is_empty() {
-                let columns = self.columns(candidate.sides, first..last);
+                let columns = self.columns(candidate.sides.map(|n| n as usize), first..last);
                 for range in left {
                     let own = &columns[range.start - first..range.end - first];
-                    kept.extend(self.strips(own, range.start, candidate.strip.across));
+                    kept.extend(self.strips(own, range.start, strip.across));
                 }
             }
         }

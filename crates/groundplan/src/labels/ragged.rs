@@ -101,14 +101,16 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
             deep.iter().copied().chain([Held::Thin]).flat_map(of).collect::<Vec<_>>()
         })
     };
-    let parts: Vec<_> = tried.chunks(TOGETHER).collect();
-    let mut candidates: Vec<(Strip, Held)> =
-        map_each(parts.len(), threads, |n| parts[n].iter().flat_map(ways).collect::<Vec<_>>()).concat();
-    candidates.sort_by(|a, b| b.0.score.total_cmp(&a.0.score));
+    let short = |n: usize| ways(&tried[n]).into_iter().map(move |(way, by)| Short::new(view, n, &way, by));
+    let part = |n: usize| (n * TOGETHER..tried.len().min((n + 1) * TOGETHER)).flat_map(short).collect::<Vec<_>>();
+    let parts = map_each(tried.len().div_ceil(TOGETHER), threads, part);
+    let mut candidates: Vec<Short> = parts.into_iter().flatten().collect();
+    candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
     let mut all = known.to_vec();
     let mut placed = Beside::of(view);
     let mut next = 0;
-    for (candidate, by) in candidates {
+    for short in candidates {
+        let (candidate, by) = (short.strip(view, tried[short.tried as usize].0), short.by);
         for strip in &all[next..] {
             placed.add(next, strip.along, strip.across);
             next += 1;
@@ -126,6 +128,34 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
         );
     }
     all.split_off(known.len())
+}
+
+/// A way in little room: of a large map there are millions, of which few stay.
+struct Short {
+    score: f64,
+    /// The place across that was tried.
+    tried: u32,
+    /// From column to column.
+    columns: [u32; 2],
+    by: Held,
+}
+
+impl Short {
+    fn new(view: &Turned, tried: usize, way: &Strip, by: Held) -> Self {
+        let columns = way.along.map(|u| view.border(u) as u32);
+        Self { score: way.score, tried: tried as u32, columns, by }
+    }
+
+    fn strip(&self, view: &Turned, across: [f64; 2]) -> Strip {
+        let along = self.columns.map(|column| view.along(column as usize));
+        ragged(view, along, across, self.score)
+    }
+}
+
+/// A way whose sides are no lines.
+fn ragged(view: &Turned, along: [f64; 2], across: [f64; 2], score: f64) -> Strip {
+    let held = [f64::NEG_INFINITY, f64::INFINITY];
+    Strip { direction: view.direction, along, across, score, bays: false, is_ragged: true, held }
 }
 
 /// True when two strips share so much of their width that one of them is too much.
@@ -255,14 +285,10 @@ impl<'a> Candidate<'a> {
             let Some(columns) = self.columns(&stretch, by, least) else { continue };
             let pieces = best_pieces(&columns.scores).into_iter().filter(|(from, to)| to - from >= least);
             ways.extend(pieces.filter(|&(from, to)| self.is_way(&columns, by, from..to, stretch.start)).map(
-                |(from, to)| Strip {
-                    direction: view.direction,
-                    along: [view.along(stretch.start + from), view.along(stretch.start + to)],
-                    across: self.across,
-                    score: columns.scores[from..to].iter().sum::<i64>() as f64 / FULL as f64 * view.cell * width,
-                    bays: false,
-                    is_ragged: true,
-                    held: [f64::NEG_INFINITY, f64::INFINITY],
+                |(from, to)| {
+                    let along = [from, to].map(|column| view.along(stretch.start + column));
+                    let score = columns.scores[from..to].iter().sum::<i64>() as f64 / FULL as f64 * view.cell * width;
+                    ragged(view, along, self.across, score)
                 },
             ));
         }

@@ -14,9 +14,8 @@ use super::sketch::{Plan, Sketch};
 use super::turned::Turned;
 use super::whole;
 use super::{Division, Evidence, JunctionKind, Label, outline};
-use crate::bands::{Later, side_by_side};
+use crate::bands::side_by_side;
 use crate::grid::{State, tidy};
-use crate::sparing::is_large;
 use std::collections::BTreeSet;
 
 /// So far round a rack there are no doors, metres.
@@ -24,7 +23,7 @@ const RIM: f64 = 0.4;
 
 /// The labels that a sketch shows, with the faces that lie in them.
 pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Label> {
-    let Sketch { views, plan, free } = sketch;
+    let Sketch { mut views, plan, free } = sketch;
     let Plan { strips, meetings, ends, extents, rows } = plan;
     let between = rows;
     let rows = whole::find(&views, &strips, &extents, &between);
@@ -71,6 +70,8 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
     let racked = racked(&views, &strips, &extents, &meetings, [&rows, &between]);
     labels.extend(junctions);
     let squares = squares(evidence, &views, &strips);
+    // Of the views their places are asked from here on, and the regions need the room.
+    views.iter_mut().for_each(Turned::let_go);
     let Some((space, bars)) = free else {
         labels.extend(rack_labels(evidence, division, &views, &rows, &squares));
         return labels;
@@ -82,9 +83,7 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
     let grounds: Vec<_> = rows.iter().map(rack).collect();
     let [racks, rooms, pillars] = side_by_side(evidence.threads, |side| {
         let squares = &squares;
-        // The views are let go with the racks: the regions of a large map need the room.
         let racks = side.start(move || rack_labels(evidence, division, &views, &rows, squares));
-        let racks = if is_large(&evidence.grid.frame) { Later::Made(racks.get()) } else { racks };
         let pillars = side.start(|| pillar_labels(evidence, &space.raster, &grounds, squares));
         let rooms = rooms::find(evidence, division, &space, bars, first, &racked, &corridors, squares);
         [racks.get(), rooms, pillars.get()]
@@ -232,6 +231,8 @@ impl<'a> Faces<'a> {
         let mut inside = self.near.within(polygon);
         inside.retain(|&face| self.left[face as usize] && outline::holds(polygon, self.centres[face as usize]));
         inside.sort_unstable();
+        // More were near.
+        inside.shrink_to_fit();
         for &face in &inside {
             self.left[face as usize] = false;
         }

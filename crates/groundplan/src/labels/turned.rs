@@ -104,6 +104,13 @@ impl Turned {
         self.keys = self.find_keys();
     }
 
+    /// Lets go of all that is seen: what is left says where places are.
+    pub fn let_go(&mut self) {
+        self.cells = Cells::default();
+        (self.rows, self.offsets, self.keys.1) = (Vec::new(), Vec::new(), Vec::new());
+        (self.covered, self.touched) = (Vec::new(), Vec::new());
+    }
+
     /// The samples that are blocked or occupied in each cell.
     fn look_at(&self, evidence: &Evidence, look: &Look) -> (Cells, Vec<Told>) {
         let [nu, nv] = self.size;
@@ -223,6 +230,11 @@ impl Turned {
     /// Place along of a column's lower border.
     pub fn along(&self, column: usize) -> f64 {
         self.start[0] + column as f64 * self.cell
+    }
+
+    /// The column whose lower border is the nearest to place `u`.
+    pub fn border(&self, u: f64) -> usize {
+        ((u - self.start[0]) / self.cell).round() as usize
     }
 
     /// Share of a column that is not free between two places across, 0 to 1; all of it where there is no cell between.

@@ -31,7 +31,7 @@ use fill::fill_runs;
 use fine::Fine;
 pub use gaps::Bar;
 pub use raster::Raster;
-use runs::Runs;
+use runs::{Run, Runs};
 use std::collections::BTreeMap;
 
 /// What stands apart from all else is a region when it holds so much, square metres, and has room for a circle of such
@@ -67,6 +67,39 @@ struct Region {
     distances: f64,
     /// Its middle in the squares that give names.
     place: [f64; 2],
+}
+
+/// Pixels of one region that hang together, before the region is made one piece.
+#[derive(Clone, Copy, Default)]
+struct Piece {
+    region: u32,
+    pixels: usize,
+    /// Those that were seen free.
+    seen: usize,
+    first: usize,
+    /// The greatest squared distance to what is not free, and the first pixel that has it.
+    widest: u32,
+    at: usize,
+    /// Sum of all pixels' distances.
+    distances: f64,
+}
+
+impl Piece {
+    /// And a run more, with its squared distances.
+    fn add(&mut self, run: &Run, seen: usize, squared: &[u32]) {
+        let top = squared.iter().copied().max().unwrap_or(0);
+        if self.pixels == 0 {
+            self.first = run.pixels().start;
+        }
+        if self.pixels == 0 || top > self.widest {
+            self.widest = top;
+            self.at = run.pixels().start + squared.iter().position(|&squared| squared == top).unwrap_or(0);
+        }
+        self.region = run.number;
+        self.pixels += run.len();
+        self.seen += seen;
+        self.distances += distances(squared);
+    }
 }
 
 /// Doors in the raster's places, and the two regions' numbers.
@@ -236,22 +269,11 @@ fn regions(
     racked: &Racked,
     squares: &Squares,
 ) -> (Vec<Region>, Runs) {
-    #[derive(Clone, Copy, Default)]
-    struct Piece {
-        region: u32,
-        pixels: usize,
-        seen: usize,
-        widest: u32,
-    }
     let (pieces, count) = numbers.pieces();
     let mut all = vec![Piece::default(); count + 1];
     clearance.over(raster, &numbers, evidence.threads, |n, own| {
-        let run = &numbers.all[n];
-        let piece = &mut all[pieces[n] as usize];
-        piece.region = run.number;
-        piece.pixels += run.len();
-        piece.seen += run.len() - raster.islands.filled.within(run);
-        piece.widest = piece.widest.max(own.iter().copied().max().unwrap_or(0));
+        let seen = numbers.all[n].len() - raster.islands.filled.within(&numbers.all[n]);
+        all[pieces[n] as usize].add(&numbers.all[n], seen, own);
     });
     let mut largest = BTreeMap::new();
     for (n, piece) in all.iter().enumerate().skip(1) {
@@ -291,19 +313,20 @@ fn regions(
     let numbers = fill_runs(raster, numbers);
     let mut regions: Vec<Region> =
         (1..=count).map(|number| Region { number, pixels: 0, at: 0, distances: 0.0, place: [0.0; 2] }).collect();
+    for run in &numbers.all {
+        regions[run.number as usize - 1].pixels += run.len();
+    }
+    // A piece that is no region of its own is of the one that its first pixel was given to.
     let mut widest = vec![0; regions.len()];
-    clearance.over(raster, &numbers, evidence.threads, |n, own| {
-        let run = &numbers.all[n];
-        let place = run.number as usize - 1;
+    for (piece, name) in all.iter().zip(names).skip(1) {
+        let number = if name == 0 { numbers.at(piece.first) } else { name };
+        let Some(place) = (number as usize).checked_sub(1) else { continue };
         let region = &mut regions[place];
-        let top = own.iter().copied().max().unwrap_or(0);
-        if region.pixels == 0 || top > widest[place] {
-            widest[place] = top;
-            region.at = run.pixels().start + own.iter().position(|&squared| squared == top).unwrap_or(0);
+        region.distances += piece.distances;
+        if piece.widest > widest[place] || piece.widest == widest[place] && piece.at < region.at {
+            (widest[place], region.at) = (piece.widest, piece.at);
         }
-        region.pixels += run.len();
-        region.distances += distances(own);
-    });
+    }
     let counts: Vec<usize> = std::iter::once(0).chain(regions.iter().map(|region| region.pixels)).collect();
     for (region, pixels) in
         regions.iter_mut().zip(samples(&numbers, |n| numbers.all[n].number, &counts, SAMPLES).into_iter().skip(1))
