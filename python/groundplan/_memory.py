@@ -16,7 +16,7 @@ def give_back() -> None:
 
     By itself it takes the largest piece that it ever got back for the size up to which it keeps them, and it keeps them
     for each thread apart: a survey of a large map, which makes and drops most of its memory several times over, held
-    half a gigabyte more. It stays so for the process. Other C libraries are left as they are.
+    0.4 GiB more. It stays so for the process. Other C libraries are left as they are.
     """
     if sys.platform != "linux":
         return
