@@ -56,6 +56,18 @@ impl Tiles {
         Self { width, height, states: states.concat() }
     }
 
+    /// The corners, in pixels, of the first and the last tile of each row in which not all is unknown.
+    pub fn seen(&self) -> Vec<[f64; 2]> {
+        let mut corners = Vec::new();
+        for (y, row) in self.states.chunks(self.width.max(1)).enumerate() {
+            let is_seen = |states: &u8| *states != bit(State::Unknown);
+            if let (Some(first), Some(last)) = (row.iter().position(is_seen), row.iter().rposition(is_seen)) {
+                corners.extend([[first, y], [last + 1, y], [first, y + 1], [last + 1, y + 1]]);
+            }
+        }
+        corners.into_iter().map(|corner| corner.map(|n| (n * SIDE) as f64)).collect()
+    }
+
     /// How far from each tile all is alike: 0 where it is of several states itself, 1 when a neighbour is not like it,
     /// 2 when a neighbour's neighbour is not, and so on. Beyond the map's borders all is unknown.
     pub fn reaches(&self) -> Vec<u8> {

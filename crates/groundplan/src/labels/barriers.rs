@@ -26,22 +26,22 @@ const GETS_THROUGH: f64 = 0.35;
 /// The columns of a strip in which such a wall stands.
 pub fn across(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
     let (low, high) = (across[0] + MARGIN, across[1] - MARGIN);
-    let is_door = |barred: &f64| *barred > BARRED && (1.0 - barred) * (high - low) <= DOOR;
-    thin(view, THICK, view.some_barred(range, low, high).iter().map(is_door).collect())
+    let is_door = |barred: f64| barred > BARRED && (1.0 - barred) * (high - low) <= DOOR;
+    thin(view, THICK, view.barred_where(range, low, high, is_door))
 }
 
 /// The columns of a strip in which a wall between two docks stands.
 fn docks(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
     let (low, high) = (across[0] + MARGIN, across[1] - MARGIN);
     let least = DOCK.max(LONG / (high - low).max(view.cell));
-    let is_wall = |barred: &f64| *barred > least && (1.0 - barred) * (high - low) <= DOOR;
-    thin(view, THIN, view.some_barred(range, low, high).iter().map(is_wall).collect())
+    let is_wall = |barred: f64| barred > least && (1.0 - barred) * (high - low) <= DOOR;
+    thin(view, THIN, view.barred_where(range, low, high, is_wall))
 }
 
 /// The columns in which such a wall stands on both sides of a strip, which leads through a door in it.
 pub fn doors(view: &Turned, sides: [[f64; 2]; 2], range: Range<usize>) -> Vec<bool> {
-    let [one, two] = sides.map(|[low, high]| view.some_barred(range.clone(), low, high));
-    thin(view, THICK, one.into_iter().zip(two).map(|(one, two)| one.min(two) > BESIDE).collect())
+    let [one, two] = sides.map(|[low, high]| view.barred_where(range.clone(), low, high, |barred| barred > BESIDE));
+    thin(view, THICK, one.into_iter().zip(two).map(|(one, two)| one && two).collect())
 }
 
 /// Columns of what is so thick, metres.
@@ -83,12 +83,12 @@ pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize>
     let mut reached = vec![true; count];
     let mut found = Vec::new();
     let place = |n: usize| first + n as f64 * view.cell;
-    let barred: Vec<Vec<f64>> =
-        (0..count).map(|n| view.some_barred(range.clone(), place(n), place(n) + view.cell)).collect();
+    let row = |n: usize| view.barred_where(range.clone(), place(n), place(n) + view.cell, |barred| barred > 0.0);
+    let barred: Vec<Vec<bool>> = (0..count).map(row).collect();
     let from = range.start;
     for c in range {
         for (columns, barred) in free_for.iter_mut().zip(&barred) {
-            *columns = if barred[c - from] == 0.0 { *columns + 1 } else { 0 };
+            *columns = if barred[c - from] { 0 } else { *columns + 1 };
         }
         let free: Vec<bool> = free_for.iter().map(|columns| *columns >= side).collect();
         let mut next = vec![false; count];

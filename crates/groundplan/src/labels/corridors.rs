@@ -309,9 +309,9 @@ impl<'a> Family<'a> {
         let within = [across[0] + margin, across[1] - margin];
         let blocked = view.some_blocked(range.clone(), within[0], within[1]);
         let closed = view.some_closed(range.clone(), within[0], within[1]);
-        let beyond = beyond.map(|[low, high]| view.some_blocked(range.clone(), low, high));
+        let beyond = beyond.map(|[low, high]| view.blocked_where(range.clone(), low, high, |share| share > BEYOND));
         let first = range.start;
-        let holds = |n: usize, c: usize| sides[n].walls.get(c) || beyond[n][c - first] > BEYOND;
+        let holds = |n: usize, c: usize| sides[n].walls.get(c) || beyond[n][c - first];
         let barriers = barriers::among(view, across, range.clone());
         range
             .map(|c| Column {
@@ -321,7 +321,7 @@ impl<'a> Family<'a> {
                 walled: holds(0, c) && holds(1, c),
                 near: sides.iter().any(|side| side.near.get(c)),
                 faces: sides.map(|side| side.faces.get(c)),
-                held: [0, 1].map(|n| beyond[n][c - first] > BEYOND),
+                held: [0, 1].map(|n| beyond[n][c - first]),
             })
             .collect()
     }
@@ -589,12 +589,13 @@ pub fn best_pieces<T: Copy + Default + PartialOrd + AddAssign>(scores: &[T]) -> 
 
 /// Fills gaps of up to `longest` between set flags.
 pub fn close(flags: &mut [bool], longest: usize) {
-    let gaps = runs(flags, false);
-    let len = flags.len();
-    for (from, to) in gaps {
-        if from > 0 && to < len && to - from <= longest {
-            flags[from..to].fill(true);
+    let mut gap = next(flags, next(flags, 0, true), false);
+    while gap < flags.len() {
+        let end = next(flags, gap, true);
+        if end < flags.len() && end - gap <= longest {
+            flags[gap..end].fill(true);
         }
+        gap = next(flags, end, false);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::grid::{Grid, State};
 use crate::tiles::{SIDE, Tiles};
+use std::ops::Range;
 
 /// Of a sample: not free, and occupied as well.
 pub const BLOCKED: u8 = 1;
@@ -9,6 +10,10 @@ pub const OCCUPIED: u8 = 16 + BLOCKED;
 
 /// Fixed-point bits of a place.
 const BITS: u32 = 32;
+/// Lanes that are looked along side by side, at most.
+pub const LANES: usize = 3;
+/// More than what floats round, pixels or samples.
+const SLACK: f32 = 0.01;
 
 /// The map, and where it is all alike.
 pub struct Look<'a> {
@@ -17,6 +22,8 @@ pub struct Look<'a> {
     samples: [u8; 256],
     across: usize,
     reaches: Vec<u8>,
+    /// Corners of all that was seen of the map.
+    seen: Vec<[f64; 2]>,
 }
 
 impl<'a> Look<'a> {
@@ -31,54 +38,136 @@ impl<'a> Look<'a> {
             }),
             across: tiles.width,
             reaches: tiles.reaches(),
+            seen: tiles.seen(),
         }
+    }
+
+    /// Points, in pixels of the grid, that have all between them that was seen of the map; none where nothing was.
+    pub fn seen(&self) -> &[[f64; 2]] {
+        &self.seen
     }
 
     /// What lies at each sample, the first at `start`, each a `step` on, in pixels of the grid; outside the map nothing
     /// was seen.
     pub fn along(&self, start: [f64; 2], step: [f64; 2], samples: &mut [u8]) {
+        self.cells(&[start], step, 0, samples);
+    }
+
+    /// The sums of what lies in cells, which have as many samples along as there are lanes of them, [`LANES`] at most;
+    /// each lane begins at a place of its own. Those from the `first` cell on.
+    pub fn cells(&self, lanes: &[[f64; 2]], step: [f64; 2], first: usize, cells: &mut [u8]) {
         let fixed = |p: [f64; 2]| p.map(|v| (v * (1i64 << BITS) as f64).round() as i64);
-        let (start, step) = (fixed(start), fixed(step));
+        let per = lanes.len();
+        let mut starts = [[0; 2]; LANES];
+        let step = fixed(step);
+        starts.iter_mut().zip(lanes).for_each(|(to, start)| *to = after(fixed(*start), step, first * per));
+        let starts = &starts[..per];
+        // The cells of which a sample is on the map, and those of which all are.
+        let count = cells.len() * per;
+        let mut some = count..0;
+        let mut all = 0..count;
+        for start in starts {
+            let own = self.on_map(*start, step, count);
+            all = all.start.max(own.start)..all.end.min(own.end);
+            if !own.is_empty() {
+                some = some.start.min(own.start)..some.end.max(own.end);
+            }
+        }
+        let some = (some.start / per).min(cells.len())..some.end.div_ceil(per).max(some.start / per).min(cells.len());
+        let all = all.start.div_ceil(per).clamp(some.start, some.end)..(all.end / per).min(some.end);
+        let whole = (per * per) as u8;
+        cells[..some.start].fill(whole * BLOCKED);
+        cells[some.end..].fill(whole * BLOCKED);
+        let alike = Alike::new(starts, step);
+        let mut n = some.start;
+        while n < some.end {
+            let is_inside = all.contains(&n);
+            if is_inside {
+                let place = after(starts[0], step, n * per);
+                let [x, y] = place.map(|p| (p >> BITS) as usize);
+                let reach = self.reaches[y / SIDE * self.across + x / SIDE];
+                let leap = alike.samples(place, reach) / per;
+                if leap > 0 {
+                    let end = all.end.min(n + leap);
+                    cells[n..end].fill(whole * self.samples[usize::from(self.rows[y][x])]);
+                    n = end;
+                    continue;
+                }
+            }
+            let end = if is_inside { all.end.min(n + SIDE.div_ceil(per)) } else { n + 1 };
+            cells[n..end].fill(0);
+            for start in starts {
+                let mut place = after(*start, step, n * per);
+                for cell in &mut cells[n..end] {
+                    for _ in 0..per {
+                        let [x, y] = place.map(|p| (p >> BITS) as usize);
+                        let pixel = self.rows.get(y).and_then(|row| row.get(x));
+                        *cell += pixel.map_or(BLOCKED, |&value| self.samples[usize::from(value)]);
+                        place = [place[0] + step[0], place[1] + step[1]];
+                    }
+                }
+            }
+            n = end;
+        }
+    }
+
+    /// Of so many samples those that lie on the map.
+    fn on_map(&self, start: [i64; 2], step: [i64; 2], count: usize) -> Range<usize> {
         let size = [self.width, self.rows.len()];
-        let (mut from, mut to) = (0, samples.len() as i64);
+        let (mut from, mut to) = (0, count as i64);
         for axis in [0, 1] {
             let (first, last) = within(start[axis], step[axis], (size[axis] as i64) << BITS);
             (from, to) = (from.max(first), to.min(last));
         }
-        let mut n = from.min(samples.len() as i64) as usize;
-        let to = (to.max(0) as usize).max(n);
-        samples[..n].fill(BLOCKED);
-        samples[to..].fill(BLOCKED);
-        // Pixels to the border of a tile, times this, are samples.
-        let pace = step.map(|s| if s == 0 { 0.0 } else { (1i64 << BITS) as f64 / s.abs() as f64 } as f32);
-        while n < to {
-            let place = [0, 1].map(|axis| start[axis] + n as i64 * step[axis]);
-            let [x, y] = place.map(|p| (p >> BITS) as usize);
-            let reach = self.reaches[y / SIDE * self.across + x / SIDE];
-            if reach == 0 {
-                let end = to.min(n + SIDE);
-                let mut place = place;
-                for sample in &mut samples[n..end] {
-                    let [x, y] = place.map(|p| (p >> BITS) as usize);
-                    *sample = self.samples[usize::from(self.rows[y][x])];
-                    place = [place[0] + step[0], place[1] + step[1]];
-                }
-                n = end;
-                continue;
-            }
-            let sample = self.samples[usize::from(self.rows[y][x])];
-            let beyond = ((usize::from(reach) - 1) * SIDE) as f32;
-            let leap = [0, 1].map(|axis| {
-                let in_tile = (place[axis] & (((SIDE as i64) << BITS) - 1)) as f32 / (1i64 << BITS) as f32;
-                let left = if step[axis] > 0 { SIDE as f32 - in_tile } else { in_tile };
-                if step[axis] == 0 { f32::MAX } else { (left + beyond) * pace[axis] }
-            });
-            // A little less, for what floats round.
-            let leap = (leap[0].min(leap[1]) - 0.01).max(0.0) as usize + 1;
-            let end = to.min(n + leap);
-            samples[n..end].fill(sample);
-            n = end;
+        let from = from.min(count as i64) as usize;
+        from..(to.max(0) as usize).max(from)
+    }
+}
+
+/// Where a lane's sample lies.
+fn after(start: [i64; 2], step: [i64; 2], samples: usize) -> [i64; 2] {
+    [0, 1].map(|axis| start[axis] + samples as i64 * step[axis])
+}
+
+/// How far lanes side by side go on over what is all alike.
+struct Alike {
+    step: [i64; 2],
+    /// Pixels, times this, are samples.
+    pace: [f32; 2],
+    /// How far the lanes lie beside the first one, pixels: towards the lower end of each axis, and towards the upper.
+    beside: [[f32; 2]; 2],
+}
+
+impl Alike {
+    fn new(starts: &[[i64; 2]], step: [i64; 2]) -> Self {
+        let pixels = |fixed: i64| fixed as f32 / (1i64 << BITS) as f32;
+        let beside = [0, 1].map(|axis| {
+            let off = || starts.iter().map(|start| start[axis] - starts[0][axis]);
+            [-off().min().unwrap_or(0), off().max().unwrap_or(0)].map(pixels)
+        });
+        Self { step, pace: step.map(|s| 1.0 / pixels(s).abs()), beside }
+    }
+
+    /// Samples from a place of the first lane on, over tiles that are alike so far around the one that it is in.
+    fn samples(&self, place: [i64; 2], reach: u8) -> usize {
+        if reach == 0 {
+            return 0;
         }
+        let beyond = ((usize::from(reach) - 1) * SIDE) as f32;
+        let mut least = f32::MAX;
+        for axis in [0, 1] {
+            let in_tile = (place[axis] & (((SIDE as i64) << BITS) - 1)) as f32 / (1i64 << BITS) as f32;
+            let [low, high] = self.beside[axis];
+            let (below, above) = (in_tile + beyond - low, SIDE as f32 - in_tile + beyond - high);
+            // A little less, for what floats round.
+            if below.min(above) < SLACK {
+                return 0;
+            }
+            if self.step[axis] != 0 {
+                least = least.min((if self.step[axis] > 0 { above } else { below }) * self.pace[axis]);
+            }
+        }
+        (least - SLACK).max(0.0) as usize + 1
     }
 }
 

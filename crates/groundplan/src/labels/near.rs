@@ -19,7 +19,8 @@ impl Near {
     /// Points with their numbers; [`Near::within`] asks for them.
     pub fn points(points: &[(u32, [f64; 2])]) -> Self {
         let mut made = Self::over(points.iter().map(|(_, point)| *point), points.len());
-        made.sort_in(points.iter().map(|&(number, point)| (made.bucket(point), number)).collect());
+        let entries: Vec<_> = points.iter().map(|&(number, point)| (made.bucket(point), number)).collect();
+        made.sort_in(&entries);
         made
     }
 
@@ -30,7 +31,7 @@ impl Near {
         for (number, polygon) in polygons.iter().enumerate() {
             made.buckets(polygon, |bucket| entries.push((bucket, number as u32)));
         }
-        made.sort_in(entries);
+        made.sort_in(&entries);
         made
     }
 
@@ -77,16 +78,22 @@ impl Near {
         Self { low, side, size, starts: Vec::new(), things: Vec::new() }
     }
 
-    fn sort_in(&mut self, mut entries: Vec<(u32, u32)>) {
-        entries.sort_unstable();
+    /// Numbers by their buckets, in each in the order in which they come (a counting sort).
+    fn sort_in(&mut self, entries: &[(u32, u32)]) {
         self.starts = vec![0; self.size[0] * self.size[1] + 1];
-        for &(bucket, _) in &entries {
+        for &(bucket, _) in entries {
             self.starts[bucket as usize + 1] += 1;
         }
         for n in 1..self.starts.len() {
             self.starts[n] += self.starts[n - 1];
         }
-        self.things = entries.into_iter().map(|(_, number)| number).collect();
+        let mut next = self.starts.clone();
+        self.things = vec![0; entries.len()];
+        for &(bucket, number) in entries {
+            let place = &mut next[bucket as usize];
+            self.things[*place as usize] = number;
+            *place += 1;
+        }
     }
 
     fn of(&self, bucket: u32) -> &[u32] {

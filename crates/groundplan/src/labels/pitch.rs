@@ -2,6 +2,7 @@
 //! leaves as future work.
 
 use super::Evidence;
+use super::on_line::OnLine;
 use super::turned::Turned;
 use crate::gradients::SPECK;
 
@@ -86,9 +87,9 @@ fn specks(evidence: &Evidence, view: &Turned) -> Vec<(f64, Vec<i32>)> {
         .collect();
     offsets.sort_by(f64::total_cmp);
     let mut places = vec![Vec::new(); offsets.len()];
+    let near = OnLine::new(&offsets, NEAR);
     specks_of(evidence, view).for_each(|[u, v]| {
-        let (from, to) = (offsets.partition_point(|&o| o < v - NEAR), offsets.partition_point(|&o| o <= v + NEAR));
-        for line in &mut places[from..to] {
+        for line in &mut places[near.at(v)] {
             line.push(((u - view.start[0]) / STEP) as i32);
         }
     });

@@ -70,6 +70,11 @@ impl Held {
         let (shortest, long) = if self == Self::Thin { VERY_LONG } else { LONG };
         shortest.max(long * width)
     }
+
+    /// Least share of a way's columns that are clear.
+    fn least_clear(self) -> f64 {
+        if self == Self::Thin { LEAST_CLEAR_THIN } else { LEAST_CLEAR }
+    }
 }
 
 /// The ways along one direction beside those that are known, the best first.
@@ -95,11 +100,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     }
     let ways = |(across, deep): &([f64; 2], Option<Held>)| {
         let key = || view.key(*across, depth(*across)).number(bay).with(u64::from(deep.is_some()));
-        evidence.recall.ragged.or_find(key, || {
-            let candidate = Candidate::new(view, *across, bay);
-            let of = |by: Held| candidate.ways(by).into_iter().map(|way| (way, by)).collect::<Vec<_>>();
-            deep.iter().copied().chain([Held::Thin]).flat_map(of).collect::<Vec<_>>()
-        })
+        evidence.recall.ragged.or_find(key, || Candidate::new(view, *across, bay).ways(*deep))
     };
     let short = |n: usize| ways(&tried[n]).into_iter().map(move |(way, by)| Short::new(view, n, &way, by));
     let part = |n: usize| (n * TOGETHER..tried.len().min((n + 1) * TOGETHER)).flat_map(short).collect::<Vec<_>>();
@@ -122,7 +123,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
             continue;
         }
         let whole = Candidate::new(view, candidate.across, bay);
-        let ways = whole.ways_in(by, whole.around(&candidate), &rivals);
+        let ways = whole.ways_left(by, whole.around(&candidate), &rivals);
         all.extend(
             ways.into_iter().filter(|way| way.along[0] < candidate.along[1] && candidate.along[0] < way.along[1]),
         );
@@ -198,7 +199,6 @@ struct Candidate<'a> {
     blocked: Shares<'a>,
     /// Of blocked cells, the least that count as so much.
     closed: u32,
-    cluttered: u32,
     unclear: u32,
 }
 
@@ -217,7 +217,6 @@ impl<'a> Candidate<'a> {
             across,
             bay: across[1] - across[0] <= bay,
             closed: blocked.least(|share| share > IMPASSABLE),
-            cluttered: blocked.least(|share| share > CLUTTERED),
             unclear: blocked.least(|share| share > CLEAR),
             blocked,
         }
@@ -226,18 +225,26 @@ impl<'a> Candidate<'a> {
     /// What the columns of a stretch are, where so many of them may be a way.
     fn columns(&self, stretch: &Range<usize>, by: Held, least: usize) -> Option<Columns> {
         let enough = |count: usize, share: f64| count as f64 >= share * least as f64;
-        let blocked = self.blocked.over(stretch.clone());
-        let clear: Vec<bool> = blocked.iter().map(|blocked| *blocked < self.unclear).collect();
-        if !enough(clear.iter().filter(|clear| **clear).count(), LEAST_CLEAR) {
+        let count = |flags: &[bool]| flags.iter().filter(|flag| **flag).count();
+        let unclear = self.blocked.reached(stretch.clone(), self.unclear);
+        if !enough(unclear.len() - count(&unclear), by.least_clear()) {
             return None;
         }
-        let held = beyond(self.across).map(|side| self.held(stretch, by, side));
+        let [low, high] = beyond(self.across);
+        let low = self.held(stretch, by, low);
+        if !enough(count(&low), LEAST_HELD) {
+            return None;
+        }
+        let held = [low, self.held(stretch, by, high)];
         let both = held[0].iter().zip(&held[1]).filter(|(one, two)| **one && **two).count();
         if !enough(both, LEAST_BOTH) {
             return None;
         }
+        let cluttered = self.blocked.least(|share| share > CLUTTERED);
+        let cluttered = self.blocked.reached(stretch.clone(), cluttered);
+        let clear: Vec<bool> = unclear.into_iter().map(|unclear| !unclear).collect();
         let score = |n: usize| match (clear[n], [held[0][n], held[1][n]]) {
-            _ if blocked[n] >= self.cluttered => -BLOCKED,
+            _ if cluttered[n] => -BLOCKED,
             (false, _) if by == Held::Thin => -BLOCKED,
             (true, [true, true]) => FULL,
             (false, [true, true]) => NARROWED,
@@ -250,12 +257,10 @@ impl<'a> Candidate<'a> {
 
     /// In which columns of a stretch a side holds.
     fn held(&self, stretch: &Range<usize>, by: Held, [low, high]: [f64; 2]) -> Vec<bool> {
-        let side = self.view.blocked_in(low, high);
-        let least = side.least(|share| share >= HELD);
-        let mut held: Vec<bool> = side.over(stretch.clone()).into_iter().map(|blocked| blocked >= least).collect();
+        let mut held = self.view.blocked_where(stretch.clone(), low, high, |share| share >= HELD);
         if by == Held::Thin {
-            let seen = self.view.occupied_in(low, high).over(stretch.clone());
-            held.iter_mut().zip(seen).for_each(|(held, seen)| *held |= seen > 0);
+            let seen = self.view.occupied_in(low, high).reached(stretch.clone(), 1);
+            held.iter_mut().zip(seen).for_each(|(held, seen)| *held |= seen);
             close(&mut held, (GAP / self.view.cell) as usize);
         }
         held
@@ -268,21 +273,36 @@ impl<'a> Candidate<'a> {
         from..self.blocked.first(last..self.view.size[0], self.closed).unwrap_or(self.view.size[0])
     }
 
-    /// The ways along it.
-    fn ways(&self, by: Held) -> Vec<Strip> {
-        self.ways_in(by, 0..self.view.size[0], &[])
+    /// Columns of the shortest way along it.
+    fn least(&self, by: Held) -> usize {
+        ((by.shortest(self.across[1] - self.across[0]) / self.view.cell) as usize).max(1)
+    }
+
+    /// The ways along it, those with deep sides first, if such are asked for.
+    fn ways(&self, deep: Option<Held>) -> Vec<(Strip, Held)> {
+        // Where a short way fits, a long one may.
+        let kinds = deep.into_iter().chain([Held::Thin]);
+        let least = kinds.clone().map(|by| self.least(by)).min().unwrap_or(1);
+        let stretches = self.blocked.open(0..self.view.size[0], least, self.closed, &[]);
+        kinds.flat_map(|by| self.ways_in(by, &stretches).into_iter().map(move |way| (way, by))).collect()
     }
 
     /// The ways along it that rivals leave, among some columns.
-    fn ways_in(&self, by: Held, within: Range<usize>, rivals: &[&Strip]) -> Vec<Strip> {
+    fn ways_left(&self, by: Held, within: Range<usize>, rivals: &[&Strip]) -> Vec<Strip> {
         let view = self.view;
-        let width = self.across[1] - self.across[0];
-        let least = ((by.shortest(width) / view.cell) as usize).max(1);
         let rivals: Vec<Range<usize>> =
             rivals.iter().map(|rival| view.column(rival.along[0])..view.column(rival.along[1]) + 1).collect();
+        self.ways_in(by, &self.blocked.open(within, self.least(by), self.closed, &rivals))
+    }
+
+    /// The ways along it in stretches that are not closed.
+    fn ways_in(&self, by: Held, stretches: &[Range<usize>]) -> Vec<Strip> {
+        let view = self.view;
+        let width = self.across[1] - self.across[0];
+        let least = self.least(by);
         let mut ways = Vec::new();
-        for stretch in self.blocked.open(within, least, self.closed, &rivals) {
-            let Some(columns) = self.columns(&stretch, by, least) else { continue };
+        for stretch in stretches.iter().filter(|stretch| stretch.len() >= least) {
+            let Some(columns) = self.columns(stretch, by, least) else { continue };
             let pieces = best_pieces(&columns.scores).into_iter().filter(|(from, to)| to - from >= least);
             ways.extend(pieces.filter(|&(from, to)| self.is_way(&columns, by, from..to, stretch.start)).map(
                 |(from, to)| {
@@ -302,14 +322,15 @@ impl<'a> Candidate<'a> {
         let both = range.clone().filter(|&c| columns.held[0][c] && columns.held[1][c]).count() as f64 / length;
         let on_map = first + range.start..first + range.end;
         let seen = |[low, high]: [f64; 2]| {
-            let seen = view.some_occupied(on_map.clone(), low, high).into_iter().filter(|share| *share > 0.0);
-            seen.count() as f64 / length
+            let of = view.occupied_in(low, high);
+            let seen = of.reached(on_map.clone(), of.least(|share| share > 0.0));
+            seen.into_iter().filter(|seen| *seen).count() as f64 / length
         };
         let faced = |[low, high]: [f64; 2]| {
             let lines = &view.covered[view.lines(low, high)];
             on_map.clone().filter(|&c| lines.iter().any(|line| line.get(c))).count() as f64 / length
         };
-        share(&columns.clear) >= if by == Held::Thin { LEAST_CLEAR_THIN } else { LEAST_CLEAR }
+        share(&columns.clear) >= by.least_clear()
             && columns.held.iter().all(|held| share(held) >= LEAST_HELD)
             && both >= if by == Held::Thin && self.bay { LEAST_BOTH_BAY } else { LEAST_BOTH }
             && sides.into_iter().all(|side| seen(side) >= LEAST_SEEN)

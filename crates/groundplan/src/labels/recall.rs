@@ -74,6 +74,12 @@ impl Recall {
         })
     }
 
+    /// True when what is found is kept, so that it has keys.
+    #[must_use]
+    pub fn keeps(&self) -> bool {
+        self.strips.now.is_some()
+    }
+
     /// What was found this time, and nothing else.
     #[must_use]
     pub fn memory(self) -> Memory {

@@ -1,12 +1,12 @@
 //! The cells of a view as sums: of how many samples, or cells, of a column something is true between any two places
 //! across.
 //!
-//! A view of few cells keeps its sums from the first row on. One of many keeps squares of cells, and those that are all
-//! alike as one number: most of a large map is.
+//! A view of few cells keeps its sums from the first row on. One of many keeps squares of cells.
 
 use super::recall::Key;
+use super::squares::{Band, SquaredRows};
+use super::summed::{Part, Summed, SummedRows};
 use crate::bands::map_bands;
-use std::cell::Cell;
 use std::ops::Range;
 
 /// What is asked of a cell.
@@ -24,57 +24,19 @@ pub enum What {
 const MANY: usize = 1 << 23;
 /// A cell has so many samples at most.
 const SAMPLES: usize = 9;
-/// So many sums are compared together.
-const TOGETHER: usize = 32;
-/// Cells along the side of a square.
-const SIDE: usize = 8;
-/// A byte for each of eight columns.
-const ONES: u64 = 0x0101_0101_0101_0101;
-const LOW: u64 = 0x0f0f_0f0f_0f0f_0f0f;
-/// Of a square that is all alike: its cells' byte, and the bit that says so.
-const ALIKE: u32 = 1 << 31;
 
 /// The cells of a view.
 pub enum Cells {
-    /// For each thing that is asked, row after row the sums of all rows before: one row more than there are of cells.
-    Summed { width: usize, sums: [Vec<u16>; 3] },
+    Summed(Summed),
     /// Bands of rows of squares.
-    Squared { width: usize, bands: Vec<Band> },
+    Squared {
+        width: usize,
+        bands: Vec<Band>,
+    },
 }
 
-/// A row of squares after another.
-pub struct Band {
-    /// For each square its byte if it is all alike, or its place in the list.
-    places: Vec<u32>,
-    squares: Vec<Square>,
-}
-
-/// Rows of cells, a byte for each column with its blocked samples in the low half and its occupied ones in the high
-/// half; and a byte for each row with a bit for each column that is barred.
-struct Square {
-    cells: [u64; SIDE],
-    barred: [u8; SIDE],
-    /// Blocked samples of all rows, which is asked most, a byte for each column.
-    whole: u64,
-}
-
-impl Square {
-    fn new(cells: [u64; SIDE], barred: [u8; SIDE]) -> Self {
-        Self { cells, barred, whole: cells.iter().map(|row| row & LOW).sum() }
-    }
-
-    /// The sums of some rows, a byte for each column.
-    fn add_up(&self, what: What, rows: Range<usize>) -> u64 {
-        match what {
-            What::Blocked => self.cells[rows].iter().map(|row| row & LOW).sum(),
-            What::Occupied => self.cells[rows].iter().map(|row| row >> 4 & LOW).sum(),
-            What::Barred => self.barred[rows].iter().map(|row| spread(*row)).sum(),
-        }
-    }
-}
-
-/// A row of cells as a whole.
-#[derive(Clone, Copy)]
+/// A row of cells as a whole; it has a key where keys are asked for.
+#[derive(Clone, Copy, Default)]
 pub struct Told {
     pub key: Key,
     /// Occupied samples.
@@ -82,8 +44,11 @@ pub struct Told {
 }
 
 impl Told {
-    fn new(row: &[u8]) -> Self {
-        Self { key: Key::default().bytes(row), occupied: row.iter().map(|cell| u64::from(cell >> 4)).sum() }
+    pub fn new(row: &[u8], keyed: bool) -> Self {
+        let key = if keyed { Key::default().bytes(row) } else { Key::default() };
+        // In chunks whose sums fit in what adds up fastest.
+        let occupied = |cells: &[u8]| cells.iter().map(|cell| u32::from(cell >> 4)).sum::<u32>();
+        Self { key, occupied: row.chunks(1 << 16).map(|cells| u64::from(occupied(cells))).sum() }
     }
 }
 
@@ -94,273 +59,108 @@ impl Default for Cells {
 }
 
 impl Cells {
-    /// From what makes the cells of any row, a byte each; and what is told of each row.
+    /// From what makes the cells of any row, a byte each, from some column on: of a view of so many cells along and
+    /// across, with so many samples to a cell, in a part of which something was seen; and what is told of each row.
     pub fn new(
-        width: usize,
-        height: usize,
+        [width, height]: [usize; 2],
+        samples: u16,
+        seen: Part,
+        keyed: bool,
         threads: usize,
-        make: impl Fn(usize, &mut [u8]) + Sync,
+        make: impl Fn(usize, usize, &mut [u8]) + Sync,
     ) -> (Self, Vec<Told>) {
-        let rows = |band: Range<usize>| {
-            let mut cells = vec![0u8; band.len() * width];
-            cells.chunks_mut(width).zip(band).for_each(|(row, n)| make(n, row));
-            let told: Vec<Told> = cells.chunks(width).map(Told::new).collect();
-            (cells, told)
-        };
         if width * height > MANY || height > usize::from(u16::MAX) / SAMPLES {
             let made = map_bands(height, threads, |band| {
-                let (cells, told) = rows(band);
+                let mut cells = vec![0u8; band.len() * width];
+                cells.chunks_mut(width).zip(band).for_each(|(row, n)| make(n, 0, row));
+                let told: Vec<Told> = cells.chunks(width).map(|row| Told::new(row, keyed)).collect();
                 (Band::new(width, &cells), told)
             });
             let (bands, told): (_, Vec<_>) = made.into_iter().unzip();
             return (Self::Squared { width, bands }, told.concat());
         }
-        let (cells, told): (Vec<_>, Vec<_>) = map_bands(height, threads, rows).into_iter().unzip();
-        let (cells, told) = (cells.concat(), told.concat());
-        let barred = barred(width, &cells);
-        let sums = [cumulate(width, &cells, |cell| cell & 15), cumulate(width, &cells, |cell| cell >> 4)];
-        let [blocked, occupied] = sums;
-        (Self::Summed { width, sums: [blocked, occupied, cumulate(width, &barred, |cell| cell)] }, told)
+        // Where keys are asked for, they are of whole rows.
+        let seen = if keyed || seen.columns.is_empty() { Part { columns: 0..width, rows: 0..height } } else { seen };
+        let Part { columns, rows } = seen;
+        let summed = |band: Range<usize>| {
+            let part = Part { columns: columns.clone(), rows: rows.start + band.start..rows.start + band.end };
+            Summed::new(part, samples, keyed, |n, row| make(n, columns.start, row))
+        };
+        // Without threads one band, which nothing need be put to.
+        let parts = if threads <= 1 { vec![summed(0..rows.len())] } else { map_bands(rows.len(), threads, summed) };
+        let mut parts = parts.into_iter();
+        let mut all = parts.next().unwrap_or_default();
+        parts.for_each(|part| all.extend(part));
+        let mut told = vec![Told::default(); rows.start];
+        told.append(&mut all.told);
+        told.resize(height, Told::default());
+        (Self::Summed(all), told)
     }
 
     /// The rows from one to before another.
     pub fn rows(&self, what: What, from: usize, to: usize) -> Rows<'_> {
         match self {
-            Self::Summed { width, sums } => {
-                let row = |n: usize| &sums[what as usize][n * width..][..*width];
-                Rows::Summed { below: row(from), above: row(to) }
-            }
-            Self::Squared { width, bands } => {
-                let across = width.div_ceil(SIDE);
-                let layer = |n: usize| {
-                    let band = &bands[n / BAND];
-                    let rows = [from.saturating_sub(n * SIDE), (to - n * SIDE).min(SIDE)];
-                    Layer { places: &band.places[n % BAND * across..][..across], squares: &band.squares, rows }
-                };
-                let layers = (from / SIDE..to.div_ceil(SIDE)).map(layer).collect();
-                Rows::Squared { layers, what, last: Cell::new((usize::MAX, [0; SIDE])) }
-            }
+            Self::Summed(summed) => Rows::Summed(summed.rows(what, from, to)),
+            Self::Squared { width, bands } => Rows::Squared(SquaredRows::new(bands, *width, what, from, to)),
         }
     }
 }
 
 /// Some rows of cells.
 pub enum Rows<'a> {
-    Summed {
-        below: &'a [u16],
-        above: &'a [u16],
-    },
-    Squared {
-        layers: Vec<Layer<'a>>,
-        what: What,
-        /// The columns that were asked last, eight at once, and their sums: mostly the next to be asked is beside.
-        last: Cell<(usize, [u32; SIDE])>,
-    },
+    Summed(SummedRows<'a>),
+    Squared(SquaredRows<'a>),
 }
 
 impl Rows<'_> {
     /// The sum over them of one column.
     pub fn at(&self, column: usize) -> u32 {
         match self {
-            Self::Summed { below, above } => u32::from(above[column] - below[column]),
-            Self::Squared { layers, what, last } => {
-                let n = column / SIDE;
-                if last.get().0 != n {
-                    last.set((n, of_square(layers, n, *what)));
-                }
-                last.get().1[column % SIDE]
-            }
+            Self::Summed(rows) => rows.at(column),
+            Self::Squared(rows) => rows.at(column),
         }
     }
 
     /// The first of some columns whose sum is as large as that.
     pub fn first(&self, columns: Range<usize>, least: u32) -> Option<usize> {
         match self {
-            Self::Summed { below, above } => {
-                let least = u16::try_from(least).ok()?;
-                columns.clone().step_by(TOGETHER).find_map(|from| {
-                    let some = from..columns.end.min(from + TOGETHER);
-                    let sums =
-                        || above[some.clone()].iter().zip(&below[some.clone()]).map(|(above, below)| above - below);
-                    (sums().fold(0, u16::max) >= least)
-                        .then(|| sums().position(|sum| sum >= least).map_or(from, |n| from + n))
-                })
-            }
-            Self::Squared { layers, what, .. } => squares(&columns).find_map(|(n, own)| {
-                let sums = of_square(layers, n, *what);
-                own.clone().find(|&place| sums[place] >= least).map(|place| n * SIDE + place)
-            }),
+            Self::Summed(rows) => rows.first(columns, least),
+            Self::Squared(rows) => rows.first(&columns, least),
         }
     }
 
     /// The last of some columns whose sum is as large as that.
     pub fn last(&self, columns: Range<usize>, least: u32) -> Option<usize> {
         match self {
-            Self::Summed { below, above } => {
-                let least = u16::try_from(least).ok()?;
-                // From the far end, many at a time.
-                let mut end = columns.end;
-                while end > columns.start {
-                    let some = columns.start.max(end.saturating_sub(TOGETHER))..end;
-                    let sums =
-                        || above[some.clone()].iter().zip(&below[some.clone()]).map(|(above, below)| above - below);
-                    if sums().fold(0, u16::max) >= least {
-                        return sums().rposition(|sum| sum >= least).map(|n| some.start + n);
-                    }
-                    end = some.start;
-                }
-                None
-            }
-            Self::Squared { layers, what, .. } => squares(&columns).rev().find_map(|(n, own)| {
-                let sums = of_square(layers, n, *what);
-                own.clone().rfind(|&place| sums[place] >= least).map(|place| n * SIDE + place)
-            }),
+            Self::Summed(rows) => rows.last(columns, least),
+            Self::Squared(rows) => rows.last(&columns, least),
+        }
+    }
+
+    /// Which of some columns have a sum as large as that.
+    pub fn reached(&self, columns: Range<usize>, least: u32) -> Vec<bool> {
+        match self {
+            Self::Summed(rows) => rows.reached(&columns, least),
+            Self::Squared(rows) => rows.over(&columns).into_iter().map(|sum| sum >= least).collect(),
         }
     }
 
     /// The sums over them of some columns.
     pub fn over(&self, columns: Range<usize>) -> Vec<u32> {
         match self {
-            Self::Summed { below, above } => {
-                let sums = above[columns.clone()].iter().zip(&below[columns]);
-                sums.map(|(above, below)| u32::from(above - below)).collect()
-            }
-            Self::Squared { layers, what, .. } => {
-                let squares = columns.start / SIDE..columns.end.div_ceil(SIDE);
-                let before = columns.start - squares.start * SIDE;
-                let mut sums = vec![[0; SIDE]; squares.len()];
-                for few in layers.chunks(FEW) {
-                    squares.clone().zip(&mut sums).for_each(|(n, sums)| add_up(few, n, *what, sums));
-                }
-                let mut sums = sums.into_flattened();
-                sums.truncate(before + columns.len());
-                sums.drain(..before);
-                sums
-            }
+            Self::Summed(rows) => rows.over(&columns),
+            Self::Squared(rows) => rows.over(&columns),
         }
     }
-}
-
-/// Some rows of a row of squares.
-pub struct Layer<'a> {
-    places: &'a [u32],
-    squares: &'a [Square],
-    rows: [usize; 2],
-}
-
-/// Of so many squares above each other the sums still fit in a byte.
-const FEW: usize = 3;
-
-/// Adds to `sums`, a number for each of its columns, what a few rows of squares hold in the n-th square of each.
-fn add_up(few: &[Layer], n: usize, what: What, sums: &mut [u32; SIDE]) {
-    let bytes: u64 = few.iter().map(|layer| layer.add_up(n, what)).sum();
-    if bytes != 0 {
-        sums.iter_mut().zip(bytes.to_le_bytes()).for_each(|(sum, byte)| *sum += u32::from(byte));
-    }
-}
-
-/// What rows of squares hold in the columns of the n-th of each.
-fn of_square(layers: &[Layer], n: usize, what: What) -> [u32; SIDE] {
-    let mut sums = [0; SIDE];
-    layers.chunks(FEW).for_each(|few| add_up(few, n, what, &mut sums));
-    sums
-}
-
-/// The squares that some columns lie in, and which of each one's columns they are.
-fn squares(columns: &Range<usize>) -> impl DoubleEndedIterator<Item = (usize, Range<usize>)> + use<> {
-    let Range { start, end } = *columns;
-    let squares = if start < end { start / SIDE..end.div_ceil(SIDE) } else { 0..0 };
-    squares.map(move |n| (n, start.saturating_sub(n * SIDE)..(end - n * SIDE).min(SIDE)))
-}
-
-/// Rows of squares in a band.
-const BAND: usize = crate::bands::BAND_ROWS / SIDE;
-
-impl Layer<'_> {
-    /// The sums over the rows of a square's columns, a byte each.
-    fn add_up(&self, n: usize, what: What) -> u64 {
-        let (place, [from, to]) = (self.places[n], self.rows);
-        if place & ALIKE != 0 {
-            return u64::from(of_cell(place as u8, what)) * (to - from) as u64 * ONES;
-        }
-        let square = &self.squares[place as usize];
-        if matches!(what, What::Blocked) && 2 * (to - from) > SIDE {
-            // Mostly all rows are asked, and of others what is not asked is less.
-            return square.whole - square.add_up(what, 0..from) - square.add_up(what, to..SIDE);
-        }
-        square.add_up(what, from..to)
-    }
-}
-
-impl Band {
-    fn new(width: usize, cells: &[u8]) -> Self {
-        let across = width.div_ceil(SIDE);
-        let mut made = Self { places: Vec::with_capacity(across * BAND), squares: Vec::new() };
-        let barred = barred(width, cells);
-        for (cells, barred) in cells.chunks(SIDE * width).zip(barred.chunks(SIDE * width)) {
-            for from in (0..width).step_by(SIDE) {
-                // What lies beyond the borders is like what lies on them.
-                let byte = |list: &[u8], row: usize, n: usize| {
-                    list[row.min(list.len() / width - 1) * width + (from + n).min(width - 1)]
-                };
-                let (mut own, mut bars) = ([0u64; SIDE], [0u8; SIDE]);
-                for row in 0..SIDE {
-                    for n in 0..SIDE {
-                        own[row] |= u64::from(byte(cells, row, n)) << (8 * n);
-                        bars[row] |= byte(barred, row, n) << n;
-                    }
-                }
-                let first = own[0] as u8;
-                let is_barred = if of_cell(first, What::Barred) == 1 { 255 } else { 0 };
-                let alike = own == [u64::from(first) * ONES; SIDE] && bars == [is_barred; SIDE];
-                made.places.push(if alike { ALIKE | u32::from(first) } else { made.squares.len() as u32 });
-                if !alike {
-                    made.squares.push(Square::new(own, bars));
-                }
-            }
-        }
-        made.squares.shrink_to_fit();
-        made
-    }
-}
-
-fn of_cell(cell: u8, what: What) -> u8 {
-    match what {
-        What::Blocked => cell & 15,
-        What::Occupied => cell >> 4,
-        What::Barred => u8::from(cell >> 4 != 0),
-    }
-}
-
-/// A byte for each bit.
-fn spread(bits: u8) -> u64 {
-    let apart = (u64::from(bits) * ONES) & 0x8040_2010_0804_0201;
-    (apart + 0x7f * ONES) >> 7 & ONES
 }
 
 /// In which cells something stands, or beside which along their row: a wall one pixel thick, or not quite square to the
 /// columns, shows in two or three of them.
-fn barred(width: usize, cells: &[u8]) -> Vec<u8> {
-    let mut barred = vec![0; cells.len()];
-    for (to, row) in barred.chunks_mut(width).zip(cells.chunks(width)) {
-        to.iter_mut().zip(row).for_each(|(to, cell)| *to = cell >> 4);
-        to.iter_mut().zip(&row[1..]).for_each(|(to, next)| *to |= next >> 4);
-        to[1..].iter_mut().zip(row).for_each(|(to, before)| *to |= before >> 4);
-        for to in to {
-            *to = u8::from(*to != 0);
-        }
+pub fn barred(row: &[u8], barred: &mut [u8]) {
+    barred.iter_mut().zip(row).for_each(|(to, cell)| *to = cell >> 4);
+    barred.iter_mut().zip(&row[1..]).for_each(|(to, next)| *to |= next >> 4);
+    barred[1..].iter_mut().zip(row).for_each(|(to, before)| *to |= before >> 4);
+    for to in barred {
+        *to = u8::from(*to != 0);
     }
-    barred
-}
-
-/// Sums of rows of cells: a row of nothing, the first row, the first two, and so on.
-fn cumulate(width: usize, cells: &[u8], part: impl Fn(u8) -> u8) -> Vec<u16> {
-    let mut sum = vec![0; width];
-    let mut sums = Vec::with_capacity(cells.len() + width);
-    sums.extend_from_slice(&sum);
-    for row in cells.chunks(width) {
-        sum.iter_mut().zip(row).for_each(|(sum, &cell)| *sum += u16::from(part(cell)));
-        sums.extend_from_slice(&sum);
-    }
-    sums
 }

@@ -2,8 +2,10 @@
 //! where structure lies on each line.
 
 use super::Evidence;
-use super::look::Look;
+use super::look::{LANES, Look};
+use super::on_line::OnLine;
 use super::recall::Key;
+use super::summed::Part;
 use super::sums::{Cells, Rows, Told, What};
 use crate::bits::Bits;
 use crate::radiograms::weight;
@@ -11,6 +13,8 @@ use std::ops::Range;
 
 /// Cells of the turned raster are about this large, metres.
 const CELL: f64 = 0.1;
+/// Cells that are kept around what was seen: what stands in one bars those beside it.
+const SPARE: usize = 2;
 /// Pixels this near to a line lie on it, metres, or at least so many pixels.
 const NEAR: (f64, f64) = (0.12, 2.0);
 
@@ -76,7 +80,7 @@ impl Turned {
         let cell = side * frame.resolution;
         let start = [low(0), low(1)];
         let size: [usize; 2] = [0, 1].map(|axis| ((high(axis) - start[axis]) / cell).ceil().max(1.0) as usize);
-        let samples = (side as u32).clamp(1, 3);
+        let samples = (side as u32).clamp(1, LANES as u32);
         let mut made = Self {
             direction,
             angle,
@@ -101,7 +105,9 @@ impl Turned {
     pub fn see(&mut self, evidence: &Evidence, look: &Look) {
         (self.cells, self.rows) = self.look_at(evidence, look);
         self.pitch = super::pitch::find(evidence, self);
-        self.keys = self.find_keys();
+        if evidence.recall.keeps() {
+            self.keys = self.find_keys();
+        }
     }
 
     /// Lets go of all that is seen: what is left says where places are.
@@ -113,7 +119,6 @@ impl Turned {
 
     /// The samples that are blocked or occupied in each cell.
     fn look_at(&self, evidence: &Evidence, look: &Look) -> (Cells, Vec<Told>) {
-        let [nu, nv] = self.size;
         let samples = self.samples as usize;
         let frame = &evidence.grid.frame;
         let sample = self.cell / samples as f64;
@@ -122,19 +127,29 @@ impl Turned {
         let (origin, along, across) = (at(0.0, 0.0), at(sample, 0.0), at(0.0, sample));
         let steps = [along, across].map(|p| [0, 1].map(|axis| p[axis] - origin[axis]));
         let place = |b: f64| [0, 1].map(|axis| origin[axis] + 0.5 * steps[0][axis] + b * steps[1][axis]);
-        Cells::new(nu, nv, evidence.threads, |n, row| {
-            let (mut lane, mut sum) = (vec![0u8; nu * samples], vec![0u8; nu * samples]);
-            for j in 0..samples {
-                look.along(place((n * samples + j) as f64 + 0.5), steps[0], &mut lane);
-                sum.iter_mut().zip(&lane).for_each(|(sum, sample)| *sum += sample);
-            }
-            // Of numbers that are known, so that many cells are added up at once.
-            match samples {
-                2 => row.iter_mut().zip(sum.chunks_exact(2)).for_each(|(cell, part)| *cell = part[0] + part[1]),
-                3 => row.iter_mut().zip(sum.chunks_exact(3)).for_each(|(cell, part)| *cell = part.iter().sum()),
-                _ => row.copy_from_slice(&sum),
-            }
+        let (seen, keyed) = (self.seen(evidence, look), evidence.recall.keeps());
+        Cells::new(self.size, self.samples.pow(2) as u16, seen, keyed, evidence.threads, |n, first, row| {
+            let lanes: [[f64; 2]; LANES] = std::array::from_fn(|j| place((n * samples + j) as f64 + 0.5));
+            look.cells(&lanes[..samples], steps[0], first, row);
         })
+    }
+
+    /// The part of the view in which something was seen of the map, and a few cells more.
+    fn seen(&self, evidence: &Evidence, look: &Look) -> Part {
+        let mut ends = [[usize::MAX, 0]; 2];
+        for &corner in look.seen() {
+            let place = self.place(evidence.grid.frame.to_metres(corner));
+            for axis in [0, 1] {
+                let cell = ((place[axis] - self.start[axis]) / self.cell).max(0.0) as usize;
+                let [from, to] = &mut ends[axis];
+                (*from, *to) = ((*from).min(cell), (*to).max(cell));
+            }
+        }
+        let part = |axis: usize| {
+            let [from, to] = ends[axis];
+            from.saturating_sub(SPARE).min(self.size[axis])..(to + SPARE + 1).min(self.size[axis])
+        };
+        Part { columns: part(0), rows: part(1) }
     }
 
     fn cover_lines(&mut self, evidence: &Evidence) {
@@ -146,26 +161,27 @@ impl Turned {
             .map(|n| lines.offsets[n])
             .collect();
         self.offsets.sort_by(f64::total_cmp);
-        self.covered = vec![Bits::new(self.size[0]); self.offsets.len()];
-        self.touched = self.covered.clone();
-        let near = NEAR.0.max(NEAR.1 * frame.resolution);
+        let mut covered = vec![Bits::new(self.size[0]); self.offsets.len()];
+        let mut touched = covered.clone();
+        let lines = OnLine::new(&self.offsets, NEAR.0.max(NEAR.1 * frame.resolution));
         let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
         let on_grid = frame.angle_to_grid(self.angle);
         evidence.gradients.iter().for_each(|(pixel, along, magnitude)| {
-            let lies = weight(f64::from(along), magnitude, on_grid, tolerance) > 0;
             let [u, v] = self.place(frame.to_metres(pixel.map(|p| f64::from(p) + 0.5)));
+            let on = lines.at(v);
+            if on.is_empty() {
+                return;
+            }
+            let lies = weight(f64::from(along), magnitude, on_grid, tolerance) > 0;
             let column = self.column(u);
-            let first = self.offsets.partition_point(|&offset| offset < v - near);
-            for (line, &offset) in self.offsets.iter().enumerate().skip(first) {
-                if offset > v + near {
-                    break;
-                }
-                self.touched[line].insert(column);
+            for line in on {
+                touched[line].insert(column);
                 if lies {
-                    self.covered[line].insert(column);
+                    covered[line].insert(column);
                 }
             }
         });
+        (self.covered, self.touched) = (covered, touched);
     }
 
     /// Keys of the view and of its lines.
@@ -297,17 +313,22 @@ impl Turned {
 
     /// [`Turned::is_closed`] of a range of columns.
     pub fn some_closed(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<bool> {
-        let barred = self.some_barred(columns.clone(), low, high);
-        self.some_blocked(columns, low, high)
-            .into_iter()
-            .zip(barred)
-            .map(|(blocked, barred)| is_closed(blocked, barred))
-            .collect()
+        let mut closed = self.blocked_where(columns.clone(), low, high, |blocked| blocked > IMPASSABLE);
+        let barred = self.barred_where(columns, low, high, |barred| barred > BARRED);
+        closed.iter_mut().zip(barred).for_each(|(closed, barred)| *closed |= barred);
+        closed
     }
 
-    /// [`Turned::barred`] of a range of columns.
-    pub fn some_barred(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
-        self.shares(What::Barred, columns, low, high)
+    /// In which of a range of columns [`Turned::blocked`] is as much as is asked for, which all that is more is too.
+    pub fn blocked_where(&self, columns: Range<usize>, low: f64, high: f64, is: impl Fn(f64) -> bool) -> Vec<bool> {
+        let of = self.blocked_in(low, high);
+        of.reached(columns, of.least(is))
+    }
+
+    /// The same of [`Turned::barred`].
+    pub fn barred_where(&self, columns: Range<usize>, low: f64, high: f64, is: impl Fn(f64) -> bool) -> Vec<bool> {
+        let of = self.shares_in(What::Barred, low, high);
+        of.reached(columns, of.least(is))
     }
 
     /// How much of every column is not free between two places across, as it is counted.
@@ -385,6 +406,11 @@ impl Shares<'_> {
     /// The same of a range of columns.
     pub fn over(&self, columns: Range<usize>) -> Vec<u32> {
         self.rows.over(columns)
+    }
+
+    /// Which of a range of columns have so many.
+    pub fn reached(&self, columns: Range<usize>, least: u32) -> Vec<bool> {
+        self.rows.reached(columns, least)
     }
 
     /// What share so many samples are. Where there is no sample the share is all.

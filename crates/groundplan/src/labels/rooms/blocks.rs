@@ -27,7 +27,11 @@ impl Blocks {
                 most.iter_mut().zip(row).for_each(|(most, own)| *most = (*most).max(*own));
             }
             clearance.push(0);
-            clearance.extend(most.chunks(side).map(|pixels| pixels.iter().fold(0, |most, own| most.max(*own))));
+            let greatest = |pixels: &[u32]| pixels.iter().fold(0, |most, own| most.max(*own));
+            match side {
+                2 => clearance.extend(most.chunks(2).map(|pixels| pixels[0].max(pixels[pixels.len() - 1]))),
+                _ => clearance.extend(most.chunks(side).map(greatest)),
+            }
             clearance.push(0);
         }
         clearance.resize(clearance.len() + width, 0);

@@ -166,8 +166,9 @@ fn square(rows: &mut [u32], width: usize) {
         heights.extend_from_slice(row);
         // Within a run of free pixels only the run and its two ends count.
         let mut next = 1;
-        while let Some(from) = (next..width).find(|&x| heights[x] != 0) {
-            let end = (from..width).find(|&x| heights[x] == 0).unwrap_or(width - 1);
+        while let Some(before) = heights[next..].iter().position(|height| *height != 0) {
+            let from = next + before;
+            let end = heights[from..].iter().position(|height| *height == 0).map_or(width - 1, |n| from + n);
             envelope(&heights[from - 1..=end], &mut row[from - 1..=end], &mut seats);
             next = end + 1;
         }
@@ -189,15 +190,18 @@ fn envelope(heights: &[u32], squared: &mut [u32], seats: &mut Vec<(i64, i64)>) {
         }
         seats.push(own);
     }
+    // Each is followed from pixel to pixel: its square, and how much the next one is more.
+    let at = |&(seat, zero): &(i64, i64), x: i64| (zero - 2 * seat * x + x * x, 2 * (x - seat) + 1);
     let mut seats = seats.iter();
-    let at = |&(seat, zero): &(i64, i64), x: i64| zero - 2 * seat * x;
-    let Some(mut own) = seats.next() else { return };
-    let mut next = seats.next();
-    for (x, to) in squared.iter_mut().enumerate() {
-        let x = x as i64;
-        while let Some(after) = next.filter(|after| at(after, x) < at(own, x)) {
-            (own, next) = (after, seats.next());
+    let Some((mut own, mut more)) = seats.next().map(|seat| at(seat, 0)) else { return };
+    let mut after = seats.next().map(|seat| at(seat, 0));
+    for (x, to) in (0..).zip(squared) {
+        while let Some((square, step)) = after.filter(|after| after.0 < own) {
+            (own, more) = (square, step);
+            after = seats.next().map(|seat| at(seat, x));
         }
-        *to = (at(own, x) + x * x) as u32;
+        *to = own as u32;
+        (own, more) = (own + more, more + 2);
+        after = after.map(|(square, step)| (square + step, step + 2));
     }
 }

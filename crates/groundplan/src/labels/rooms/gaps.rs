@@ -1,6 +1,7 @@
 //! Gaps in walls: where a line of the map is free between structure that lies along it.
 
 use super::super::Evidence;
+use super::super::on_line::OnLine;
 use super::raster::Raster;
 use crate::grid::angle_between;
 use crate::subdivision::distance;
@@ -84,6 +85,7 @@ fn lined(evidence: &Evidence, raster: &Raster, angle: f64, offsets: &[f64]) -> V
     let (cos, sin) = (libm::cos(angle), libm::sin(angle));
     let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
     let near = (ON_LINE.0 / evidence.grid.frame.resolution).max(ON_LINE.1);
+    let lines = OnLine::new(offsets, near);
     let mut steps: Vec<Vec<i64>> = vec![Vec::new(); offsets.len()];
     evidence.gradients.iter().for_each(|(pixel, along, _)| {
         if angle_between(f64::from(along), angle) > tolerance {
@@ -91,8 +93,7 @@ fn lined(evidence: &Evidence, raster: &Raster, angle: f64, offsets: &[f64]) -> V
         }
         let [x, y] = pixel.map(|p| f64::from(p) + 0.5);
         let (u, v) = (x * cos + y * sin, y * cos - x * sin);
-        let first = offsets.partition_point(|&offset| offset < v - near);
-        for (line, _) in offsets.iter().enumerate().skip(first).take_while(|(_, offset)| **offset <= v + near) {
+        for line in lines.at(v) {
             steps[line].push((u / raster.side as f64).floor() as i64);
         }
     });
@@ -143,25 +144,32 @@ impl<'a> Line<'a> {
         })
     }
 
+    /// The gaps beside which edge pixels lie along the line, at some steps in ascending order.
     fn gaps(&self, lined: &[i64], widest: f64, bars: &mut Vec<Bar>) {
         let pixels = |metres: f64| self.raster.pixels(metres);
         let near = pixels(NEAR).round().max(1.0) as i64;
-        let (from, to) = self.span();
-        let free: Vec<bool> = (from..to).map(|step| self.is_free(step, near)).collect();
-        let runs = runs(&free);
         let jamb = pixels(JAMB).max(1.0) as i64;
-        let on_line = |from: i64, to: i64| {
-            (lined.partition_point(|&s| s < to) - lined.partition_point(|&s| s < from)) as f64 >= LINED * jamb as f64
-        };
-        for three in runs.windows(3) {
-            let [before, gap, after] = [three[0], three[1], three[2]].map(|(a, b)| (b - a) as f64);
-            let (start, end) = (three[1].0 as i64 + from, three[1].1 as i64 + from);
-            if free[three[1].0]
-                && (pixels(CRACK)..=pixels(widest)).contains(&gap)
-                && before.max(after) >= pixels(WALL)
-                && (on_line(start - jamb, start) || on_line(end, end + jamb))
-            {
-                bars.push(Bar { ends: [self.place(start), self.place(end - 1)] });
+        let (from, to) = self.span();
+        // Farther from such a pixel no step bears on a gap beside it.
+        let reach = jamb + pixels(widest).ceil() as i64 + pixels(WALL).ceil() as i64 + 2;
+        for together in lined.chunk_by(|one, next| next - one <= 2 * reach) {
+            let (first, last) = (together[0] - reach, together[together.len() - 1] + reach);
+            let (from, to) = (from.max(first), to.min(last + 1));
+            let free: Vec<bool> = (from..to).map(|step| self.is_free(step, near)).collect();
+            let on_line = |from: i64, to: i64| {
+                let count = together.partition_point(|&s| s < to) - together.partition_point(|&s| s < from);
+                count as f64 >= LINED * jamb as f64
+            };
+            for three in runs(&free).windows(3) {
+                let [before, gap, after] = [three[0], three[1], three[2]].map(|(a, b)| (b - a) as f64);
+                let (start, end) = (three[1].0 as i64 + from, three[1].1 as i64 + from);
+                if free[three[1].0]
+                    && (pixels(CRACK)..=pixels(widest)).contains(&gap)
+                    && before.max(after) >= pixels(WALL)
+                    && (on_line(start - jamb, start) || on_line(end, end + jamb))
+                {
+                    bars.push(Bar { ends: [self.place(start), self.place(end - 1)] });
+                }
             }
         }
     }

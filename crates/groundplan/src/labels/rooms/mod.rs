@@ -32,6 +32,7 @@ use fine::Fine;
 pub use gaps::Bar;
 pub use raster::Raster;
 use runs::{Run, Runs};
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// What stands apart from all else is a region when it holds so much, square metres, and has room for a circle of such
@@ -375,7 +376,9 @@ fn middle(evidence: &Evidence, raster: &Raster, pixels: &[usize], squares: &Squa
     let ends = (STICKS_OUT * places.len() as f64) as usize;
     [0, 1].map(|axis| {
         let mut values: Vec<f64> = places.iter().map(|place| place[axis]).collect();
-        let mut ranked = |rank: usize| *values.select_nth_unstable_by(rank, f64::total_cmp).1;
+        // None of them is no number.
+        let order = |a: &f64, b: &f64| a.partial_cmp(b).unwrap_or(Ordering::Equal);
+        let mut ranked = |rank: usize| *values.select_nth_unstable_by(rank, order).1;
         f64::midpoint(ranked(ends), ranked(places.len() - 1 - ends))
     })
 }

@@ -141,14 +141,18 @@ impl Part {
             Self { first: band.start, free: Bits::new(band.len() * width), rows: [usize::MAX, 0], columns: [width, 0] };
         let mut row = vec![true; width];
         for y in band {
-            row.fill(true);
-            for line in y * side..(y + 1) * side {
-                clear_taken(grid, &is_free, line, side, &mut row);
-            }
             let start = (y - part.first) * width;
-            for (n, flags) in row.chunks(WORD).enumerate() {
-                let word = flags.iter().rev().fold(0, |word, &flag| word << 1 | u64::from(flag));
-                part.free.add(start + n * WORD, word);
+            if side == 1 {
+                for (n, pixels) in grid.row(y).chunks(WORD).enumerate() {
+                    part.free.add(start + n * WORD, word_of(pixels, &is_free));
+                }
+            } else {
+                row.fill(true);
+                (y * side..(y + 1) * side).for_each(|line| clear_taken(grid, &is_free, line, side, &mut row));
+                for (n, flags) in row.chunks(WORD).enumerate() {
+                    let word = flags.iter().rev().fold(0, |word, &flag| word << 1 | u64::from(flag));
+                    part.free.add(start + n * WORD, word);
+                }
             }
             let mut runs = part.free.runs(start..start + width, true);
             if let Some(run) = runs.next() {
@@ -161,12 +165,19 @@ impl Part {
     }
 }
 
+/// A bit for each of some pixels, mostly alike eight by eight.
+fn word_of(pixels: &[u8], is_free: &[bool; 256]) -> u64 {
+    pixels.chunks(8).rev().fold(0, |word, eight| {
+        let free = |pixel: u8| u64::from(is_free[usize::from(pixel)]);
+        let alike = <[u8; 8]>::try_from(eight).is_ok_and(|eight| eight == [eight[0]; 8]);
+        let bits =
+            if alike { 255 * free(eight[0]) } else { eight.iter().rev().fold(0, |bits, &p| bits << 1 | free(p)) };
+        word << 8 | bits
+    })
+}
+
 /// Takes out of a row of the raster what is not free in one of the map's rows.
 fn clear_taken(grid: &Grid, free: &[bool; 256], y: usize, side: usize, row: &mut [bool]) {
-    if side == 1 {
-        row.iter_mut().zip(grid.row(y)).for_each(|(to, &value)| *to = free[usize::from(value)]);
-        return;
-    }
     for (to, from) in row.iter_mut().zip(grid.row(y).chunks(side)) {
         *to &= from.iter().all(|&value| free[usize::from(value)]);
     }
