@@ -8,7 +8,7 @@
 use super::beside::{Beside, placed, wider};
 use super::recall::{Key, Recall};
 use super::turned::{IMPASSABLE, Turned};
-use super::{Evidence, barriers, ragged};
+use super::{Evidence, barriers, mouths, ragged};
 use crate::bands::map_each;
 use crate::bits::Bits;
 use crate::parameters::Parameters;
@@ -85,6 +85,12 @@ const CLOSED: f64 = 1e6;
 const DENSE: f64 = 0.6;
 /// Least share of a corridor's length that is walled on both sides.
 const LEAST_WALLED: f64 = 0.2;
+/// A side begins so near to the mouth of a way beside it, metres.
+const JAMB: f64 = 0.6;
+/// What aisles open into side by side is so many times as wide as they are.
+const LED_TO: f64 = 0.65;
+/// And so much of its side between them has structure on it.
+const BETWEEN: f64 = 0.5;
 /// A corridor so many times as long as wide is a long one.
 const LONG: f64 = 4.5;
 const VERY_LONG: f64 = 6.5;
@@ -118,7 +124,7 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
     // Each view shares its own work out among what threads are left.
     let threads = evidence.threads.div_ceil(views.len().max(1));
     let found = map_each(views.len(), evidence.threads, |n| {
-        let family = Family::new(evidence, views, &views[n]);
+        let family = Family::new(evidence, views, &views[n], &[]);
         let mut parts = family.candidates(threads, evidence.recall);
         let whole = parts.iter().filter(|c| c.is_corridor).copied().collect();
         parts.retain(|c| !c.is_corridor);
@@ -140,6 +146,15 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
             strips.push(way);
         }
     }
+    // Now that the ways are known, what lies before them is known to be no gap.
+    let more = map_each(views.len(), evidence.threads, |n| {
+        let mouths = mouths::of(views, &views[n], &strips);
+        let family = Family::new(evidence, views, &views[n], &mouths);
+        let whole = family.before_mouths(&mouths);
+        let known: Vec<Strip> = strips.iter().filter(|strip| strip.direction == n).cloned().collect();
+        family.best(whole, &known)
+    });
+    strips.extend(more.into_iter().flatten());
     strips.sort_by_key(|strip| strip.direction);
     strips
 }
@@ -214,7 +229,8 @@ impl Candidate {
 }
 
 impl<'a> Family<'a> {
-    fn new(evidence: &Evidence<'a>, views: &[Turned], view: &'a Turned) -> Self {
+    /// With what is known of the mouths of others in each line, or nothing.
+    fn new(evidence: &Evidence<'a>, views: &[Turned], view: &'a Turned, mouths: &[Vec<Range<usize>>]) -> Self {
         let racked = views.iter().any(|view| view.pitch.is_some());
         // Where the bays are known, one post may be missing.
         let bay = view.pitch.map_or(BAY, |pitch| BAY.max(MISSING * pitch));
@@ -223,7 +239,9 @@ impl<'a> Family<'a> {
             racked,
             view,
             parameters: evidence.parameters,
-            sides: (0..view.offsets.len()).map(|n| Side::new(view, n, bay, racked)).collect(),
+            sides: (0..view.offsets.len())
+                .map(|n| Side::new(view, n, bay, racked, mouths.get(n).map_or(&[], Vec::as_slice)))
+                .collect(),
         }
     }
 
@@ -256,6 +274,43 @@ impl<'a> Family<'a> {
             found
         };
         map_each(self.view.offsets.len(), threads, above).into_iter().flatten().collect()
+    }
+
+    /// The corridors into which others open side by side.
+    fn before_mouths(&self, mouths: &[Vec<Range<usize>>]) -> Vec<Candidate> {
+        let offsets = &self.view.offsets;
+        let mut found = Vec::new();
+        for low in 0..offsets.len() {
+            for high in low + 1..offsets.len() {
+                let (across, sides) = ([offsets[low], offsets[high]], [low, high]);
+                let width = across[1] - across[0];
+                if width > self.parameters.labels_max_width {
+                    break;
+                }
+                if width < self.parameters.labels_min_width || sides.iter().all(|&side| mouths[side].is_empty()) {
+                    continue;
+                }
+                for open in self.open(across) {
+                    let columns = self.columns(sides, open.clone());
+                    let strips = self.strips(&columns, open.start, across).into_iter();
+                    let led_to =
+                        strips.filter(|strip| sides.iter().any(|&side| self.is_led_to(strip, side, &mouths[side])));
+                    found.extend(led_to.map(|strip| Candidate::new(self.view, sides, &strip, true)));
+                }
+            }
+        }
+        found
+    }
+
+    /// True when mouths of a side open into a strip side by side, with structure between them, and none is much wider:
+    /// beside wide aisles, what is narrow is in a row.
+    fn is_led_to(&self, strip: &Strip, side: usize, mouths: &[Range<usize>]) -> bool {
+        let (from, to) = self.range(strip);
+        let open: Vec<_> = mouths.iter().filter(|mouth| from < mouth.end && mouth.start < to).collect();
+        let widest = open.iter().map(|mouth| mouth.len()).max().unwrap_or(0) as f64 * self.view.cell;
+        let between: Vec<usize> = (from..to).filter(|c| !open.iter().any(|mouth| mouth.contains(c))).collect();
+        let held = between.iter().filter(|&&c| self.sides[side].near.get(c)).count();
+        open.len() >= 2 && strip.width() >= LED_TO * widest && held as f64 >= BETWEEN * between.len() as f64
     }
 
     /// The stretches of a strip that are not closed and are long enough for a corridor.
@@ -463,21 +518,24 @@ struct Side {
 }
 
 impl Side {
-    fn new(view: &Turned, line: usize, bay: f64, racked: bool) -> Self {
+    fn new(view: &Turned, line: usize, bay: f64, racked: bool, mouths: &[Range<usize>]) -> Self {
         let cells = |metres: f64| (metres / view.cell) as usize;
-        let joined = |from: &[Bits], gap: f64, shortest: f64| {
+        let joined = |from: &Bits, gap: f64, shortest: f64| {
             let mut joined = Bits::new(view.size[0]);
-            let runs = from[line].joined(0..view.size[0], cells(gap)).into_iter();
+            let runs = from.joined(0..view.size[0], cells(gap)).into_iter();
             runs.filter(|run| run.len() >= cells(shortest)).for_each(|run| joined.fill(run));
             joined
         };
         // Where bays recur, their posts are the side of the way along them.
-        let posts = if racked { &view.touched } else { &view.covered };
-        Self {
-            walls: joined(posts, bay, SHORTEST_SIDE),
-            near: joined(posts, BAY / 2.0, 0.0),
-            faces: joined(&view.covered, FACE_GAP, FACE),
+        let posts = if racked { &view.touched[line] } else { &view.covered[line] };
+        let mut walls = joined(posts, bay, SHORTEST_SIDE);
+        if !mouths.is_empty() {
+            for mouth in mouths {
+                walls.fill(mouth.clone());
+            }
+            walls = joined(&walls, JAMB, SHORTEST_SIDE);
         }
+        Self { walls, near: joined(posts, BAY / 2.0, 0.0), faces: joined(&view.covered[line], FACE_GAP, FACE) }
     }
 }
 

@@ -6,7 +6,7 @@ use super::beside::{Beside, placed, wider};
 use super::corridors::Strip;
 use super::look::Look;
 use super::racks::{self, Row};
-use super::sections::Columns;
+use super::sections::{Columns, Free};
 use super::turned::Turned;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
@@ -19,19 +19,32 @@ const EXPECTED: (f64, f64) = (0.05, 0.005);
 /// Where posts recur along the rows, what crosses them is no more than so many times as long as the shorter of the two
 /// corridors beside a row: short ones between the goods of racks do not make bays of the aisles.
 const LONGER: f64 = 4.0;
+/// Cross aisles of a place are of one width but for this share.
+const ALIKE: f64 = 0.15;
 /// What goes on so far beyond the rows, metres, is a way there.
 const BEYOND: f64 = 2.0;
 
 /// The ways through the rows between corridors, as strips of the direction that crosses them.
 pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], rows: &[Row]) -> Vec<Strip> {
-    let mut gates = Vec::new();
+    let (mut gates, mut doubtful) = (Vec::new(), Vec::new());
     for row in rows {
         let (Some(between), Some(other)) = (row.between, crossing(views, row.direction)) else { continue };
         let view = &views[row.direction];
         let middles = between.map(|n| strips[n].middle());
         let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, view.pitch);
-        gates.extend(columns.ways().into_iter().map(|way| strip(view, other, row, way, middles)));
+        for way in columns.ways() {
+            let found = if columns.is_as_bays(way) { &mut doubtful } else { &mut gates };
+            found.push(strip(view, other, row, way, middles));
+        }
     }
+    // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
+    let sure: Vec<&Strip> = strips.iter().filter(|strip| !strip.bays).chain(&gates).collect();
+    let is_told = |gate: &Strip| {
+        let others: Vec<f64> = sure.iter().filter(|s| s.direction == gate.direction).map(|s| s.width()).collect();
+        others.is_empty() || others.iter().any(|width| (width - gate.width()).abs() <= ALIKE * gate.width())
+    };
+    doubtful.retain(is_told);
+    gates.extend(doubtful);
     in_line(gates)
 }
 
@@ -95,9 +108,8 @@ struct Crossed {
     open: bool,
     /// It passes the row's end.
     at_end: bool,
-    /// Where nothing stands in the row between the strip's sides: in which share of the row it would be so by chance,
-    /// and of how many places.
-    free: Option<(f64, f64)>,
+    /// Where nothing stands in the row between the strip's sides: where else it is so.
+    free: Option<Free>,
 }
 
 /// What a strip finds where it crosses a row; nothing where it ends before.
@@ -166,13 +178,16 @@ fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
 /// How many places would be expected at which as many rows are free by chance (as of alignments, Desolneux, Moisan and
 /// Morel 2000).
 fn by_chance(crossed: &[Crossed]) -> f64 {
-    let free = || crossed.iter().filter_map(|row| row.free.map(|free| (row.at_end, free)));
-    if free().count() < 2 {
+    let rows = || crossed.iter().filter_map(|row| row.free.map(|free| (row.at_end, free)));
+    if rows().count() < 2 {
         return f64::INFINITY;
     }
-    let chance: f64 = free().map(|(_, (share, _))| share).product();
+    // Rows of a place are filled alike: as if of all their places one more were free and one were not.
+    let sum = |of: fn(Free) -> f64| rows().map(|(_, free)| of(free)).sum::<f64>();
+    let common = (sum(|free| free.free) + 1.0) / (sum(|free| free.places) + 2.0);
+    let chance: f64 = rows().map(|(_, row)| common.max(row.free / row.places.max(1.0))).product();
     // A row has many places, but two ends.
-    chance * free().map(|(at_end, (_, places))| if at_end { 2.0 } else { places }).fold(0.0, f64::max)
+    chance * rows().map(|(at_end, row)| if at_end { 2.0 } else { row.places }).fold(0.0, f64::max)
 }
 
 /// The direction that is most nearly square to another.

@@ -11,6 +11,7 @@ mod gates;
 mod joined;
 mod junctions;
 mod look;
+mod mouths;
 mod names;
 mod near;
 mod on_line;

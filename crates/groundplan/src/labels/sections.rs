@@ -54,6 +54,13 @@ pub struct Columns<'a> {
     faces: Vec<[bool; 2]>,
 }
 
+/// Places of a row that do not overlap, as many as there is room for, and how many of them are free.
+#[derive(Clone, Copy, Debug)]
+pub struct Free {
+    pub free: f64,
+    pub places: f64,
+}
+
 impl<'a> Columns<'a> {
     /// The columns of a row; its uprights stand along the `other` direction.
     pub fn new(
@@ -115,9 +122,8 @@ impl<'a> Columns<'a> {
         first < last && self.share(first, last) <= CLUTTER && !(first..last).any(|n| self.stops(n))
     }
 
-    /// The share of the row, but for what lies between two sides, where as much beside one another would be free, and
-    /// how many such places side by side there are; the share as if one more were free and one were not.
-    pub fn free_elsewhere(&self, sides: [f64; 2]) -> (f64, f64) {
+    /// In how many places of the row, but for what lies between two sides, as much beside one another is free.
+    pub fn free_elsewhere(&self, sides: [f64; 2]) -> Free {
         let (first, last) = self.inner(sides);
         let (count, length) = (self.blocked.len(), last - first);
         let (mut stops, mut taken) = (vec![0u32], vec![0.0]);
@@ -131,8 +137,7 @@ impl<'a> Columns<'a> {
         };
         let others = || (0..=count.saturating_sub(length)).filter(|n| n + length <= first || last <= *n);
         let places = |count: usize| count as f64 / length.max(1) as f64;
-        let (all, free) = (places(others().count()), places(others().filter(is_free).count()));
-        ((free + 1.0) / (all + 2.0), all)
+        Free { free: places(others().filter(is_free).count()), places: places(others().count()) }
     }
 
     /// True when something stands along a straight line across the row near a place.
@@ -173,9 +178,14 @@ impl<'a> Columns<'a> {
         }
         let stands = |n: &usize| self.blocked[*n] > FREE || self.faces[*n].contains(&true);
         let free = (from + 1..to.saturating_sub(1)).filter(stands).count() == 0;
-        free && self.pitch.is_some_and(|pitch| {
-            let count = (width / pitch).round();
-            width > BAY * pitch && (count < 2.0 || (width / pitch - count).abs() >= WHOLE)
+        free && self.pitch.is_some() && !self.is_as_bays([self.place(from), self.place(to)])
+    }
+
+    /// True when a section is as wide as a bay, or as some beside one another.
+    pub fn is_as_bays(&self, [from, to]: [f64; 2]) -> bool {
+        self.pitch.is_some_and(|pitch| {
+            let (width, count) = (to - from, ((to - from) / pitch).round());
+            width <= BAY * pitch || (count >= 2.0 && (width / pitch - count).abs() < WHOLE)
         })
     }
 

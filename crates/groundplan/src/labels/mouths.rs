@@ -1,0 +1,39 @@
+//! Where corridors of other directions open into a line side by side: what lies there is no gap in a side, but the
+//! mouths of ways that are known.
+
+use super::corridors::Strip;
+use super::turned::Turned;
+use std::ops::Range;
+
+/// What ends so near to a line reaches it, metres.
+const NEAR: f64 = 0.5;
+/// The least sine of the angle at which a corridor opens into a line.
+const SQUARE: f64 = 0.5;
+/// Aisles side by side are of one width but for this share.
+const ALIKE: f64 = 0.1;
+
+/// For each line of a view the columns of such mouths.
+pub fn of(views: &[Turned], view: &Turned, strips: &[Strip]) -> Vec<Vec<Range<usize>>> {
+    let square = |strip: &&Strip| libm::sin(views[strip.direction].angle - view.angle).abs() >= SQUARE;
+    let others: Vec<&Strip> = strips.iter().filter(square).filter(|strip| !strip.bays).collect();
+    let on = |&offset: &f64| {
+        let reaching: Vec<_> =
+            others.iter().filter_map(|strip| Some((*strip, mouth(views, view, offset, strip)?))).collect();
+        let is_alike = |one: &Strip, two: &Strip| {
+            let wider = one.width().max(two.width());
+            one.direction == two.direction && (one.width() - two.width()).abs() <= ALIKE * wider
+        };
+        let beside = |n: usize| (0..reaching.len()).any(|m| m != n && is_alike(reaching[n].0, reaching[m].0));
+        (0..reaching.len()).filter(|&n| beside(n)).map(|n| reaching[n].1.clone()).collect()
+    };
+    view.offsets.iter().map(on).collect()
+}
+
+/// Where a corridor opens into a line, if it reaches it.
+fn mouth(views: &[Turned], view: &Turned, offset: f64, strip: &Strip) -> Option<Range<usize>> {
+    let other = &views[strip.direction];
+    let [one, two] = strip.across.map(|t| view.crossing(other, offset, t));
+    let s = f64::midpoint(one[0], two[0]);
+    let reaches = strip.along[0] - NEAR <= s && s <= strip.along[1] + NEAR;
+    reaches.then(|| view.column(one[1].min(two[1]))..view.column(one[1].max(two[1])) + 1)
+}
