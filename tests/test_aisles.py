@@ -142,6 +142,27 @@ def docks() -> npt.NDArray[np.uint8]:
     return picture
 
 
+def open_end(cross: int) -> npt.NDArray[np.uint8]:
+    """A hall of three aisles of 9 m by 2.5 m between rows of racks, which open into a way so many pixels wide."""
+    picture = np.full((270, 220 + cross), 205, np.uint8)
+    picture[18:252, 18 : 202 + cross] = 0
+    picture[20:250, 20 : 200 + cross] = 254
+    for row in (70, 160):
+        picture[row : row + 40, 20:200] = 0
+        picture[row + 2 : row + 38, 22:198] = 205
+    return picture
+
+
+def coarse() -> npt.NDArray[np.uint8]:
+    """A hall of 25 m by 13 m, 0.1 m a pixel: four aisles of 1.9 m between solid rows, a way of 4.3 m at either end."""
+    picture = np.full((172, 290), 205, np.uint8)
+    picture[18:154, 18:272] = 0
+    picture[20:152, 20:270] = 254
+    for row, deep in ((20, 7), (46, 14), (79, 14), (112, 14), (145, 7)):
+        picture[row : row + deep, 63:227] = 0
+    return picture
+
+
 def racks_in_the_open() -> npt.NDArray[np.uint8]:
     """A hall of 30 m by 40 m with three racks of 18 m along its left wall, and beyond their ends eight of 4 m across,
     in two columns of which the first stands 8 m off that wall."""
@@ -204,6 +225,22 @@ def test_no_aisle_leads_along_docks_through_the_walls_between_them() -> None:
     aisles = groundplan.survey(docks(), resolution=RESOLUTION).of_kind("corridor")
     walls = [shapely.box(x, 1.5, x + 0.15, 2.5) for x in np.arange(5.3, 22.0, 4.4)]
     assert not any(shapely.Polygon(aisle["polygon"]).intersects(wall) for aisle in aisles for wall in walls)
+
+
+@pytest.mark.parametrize("cross", [60, 80, 100, 120])
+def test_aisles_side_by_side_tell_the_way_that_they_open_into_be_it_half_as_wide_as_the_hall(cross: int) -> None:
+    survey = groundplan.survey(open_end(cross), resolution=RESOLUTION)
+    widths = sorted(label["width"] for label in survey.of_kind("corridor"))
+    assert widths == pytest.approx([2.5, 2.5, 2.5, cross * RESOLUTION], abs=0.15)
+    crossings = [junction["type"] for junction in survey.of_kind("junction")]
+    assert sorted(crossings) == ["L", "L", "T", "end", "end", "end"]
+
+
+def test_ends_of_rows_that_a_coarse_map_has_few_pixels_of_make_the_ways_before_them() -> None:
+    survey = groundplan.survey(coarse(), resolution=0.1)
+    widths = sorted(label["width"] for label in survey.of_kind("corridor"))
+    assert widths == pytest.approx([1.9] * 4 + [4.3] * 2, abs=0.25)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 4
 
 
 def test_ways_between_racks_in_the_open_end_with_them_and_not_at_a_wall_far_off() -> None:

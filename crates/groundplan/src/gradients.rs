@@ -51,8 +51,9 @@ impl Gradients {
     }
 }
 
-/// Smallest window in which a staircase shows its slope, pixels.
-const MIN_RADIUS: usize = 7;
+/// Smallest window in which a staircase shows its slope, pixels. A larger one leaves nothing of the end of a row of racks
+/// on a coarse map: it holds a corner everywhere.
+const MIN_RADIUS: usize = 4;
 /// Largest window, pixels; beyond it only time is lost.
 const MAX_RADIUS: usize = 32;
 

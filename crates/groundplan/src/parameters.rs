@@ -171,7 +171,7 @@ const DETAILS: &[(&str, f64)] = &[("coarse", 0.25), ("fine", 0.9)];
 
 parameters! {
     gradients_radius: f64 = 0.35, "gradients.radius", "m", Range::Number(0.0, 5.0), false, "II-A",
-        "Half the window over which the gradient of an edge pixel is taken; never under 7 pixels or over 32.";
+        "Half the window over which the gradient of an edge pixel is taken; never under 4 pixels or over 32.";
     directions_count: Option<usize> = None, "directions.count", "", Range::Whole(1.0, 16.0), true, "II-A",
         "How many directions to take, strongest first; found by itself when not set.";
     directions_angles_deg: Option<Vec<f64>> = None, "directions.angles_deg", "deg", Range::Numbers(-360.0, 360.0), true, "II-A",
