@@ -7,8 +7,8 @@ import sys
 
 #: mallopt's names: from which size on a piece is memory of its own, and how many heaps there may be.
 _MMAP_THRESHOLD, _ARENA_MAX = -3, -8
-#: In bytes.
-_OWN = 1 << 16
+#: In bytes. With one heap four threads wait for one another: a survey takes twice as long, and a thirtieth less memory.
+_OWN, _HEAPS = 1 << 16, 3
 
 
 def give_back() -> None:
@@ -23,4 +23,4 @@ def give_back() -> None:
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt is not None:
         mallopt(_MMAP_THRESHOLD, _OWN)
-        mallopt(_ARENA_MAX, 1)
+        mallopt(_ARENA_MAX, _HEAPS)
