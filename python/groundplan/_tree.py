@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
@@ -297,10 +298,20 @@ def checked_pattern(pattern: dict[str, Any]) -> Label:
 
 def checked_reading(reading: dict[str, Any]) -> dict[str, Any]:
     """What a file says of how the map was read, held to the names that there are."""
-    strange = [name for name in reading if name not in READING]
-    if strange:
-        raise ValueError(f"there is no {strange[0]!r} in reading a map")
+    wrong = strange_reading(reading)
+    if wrong:
+        raise ValueError(wrong[0])
     return dict(reading)
+
+
+def strange_reading(reading: dict[str, Any]) -> tuple[str, str] | None:
+    """Of what is given for reading a map the first name that there is none of, as a sentence, and what would help."""
+    for name in reading:
+        if name not in READING:
+            near = difflib.get_close_matches(name, READING, 1)
+            hint = f"did you mean {near[0]}?" if near else "it takes what groundplan.read does"
+            return f"there is no {name!r} in reading a map", hint
+    return None
 
 
 def dump(value: Any) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import math
 import os
@@ -36,7 +35,7 @@ from groundplan._results import (
     Walls,
     record,
 )
-from groundplan._tree import LABELS, READING, Table, from_tree, to_tree, written
+from groundplan._tree import LABELS, Table, from_tree, strange_reading, to_tree, written
 from groundplan.maps import Map, MapWarning, from_array
 from groundplan.maps.map_server import shown
 from groundplan.parameters import named, resolve
@@ -427,11 +426,9 @@ def _check_reading(map: object, resolution: object, origin: object, client: obje
             raise MapError("map.option", f"{said[0]} says nothing about a Map", "read it anew with that")
     elif reading and is_array(map):
         raise MapError("map.option", "reading says nothing about an array", "groundplan.from_array takes these words")
-    strange = [name for name in reading if name not in READING]
-    if strange:
-        near = difflib.get_close_matches(strange[0], READING, 1)
-        hint = f"did you mean {near[0]}?" if near else "it takes what groundplan.read does"
-        raise MapError("map.option", f"there is no {strange[0]!r} in reading a map", hint)
+    wrong = strange_reading(reading)
+    if wrong:
+        raise MapError("map.option", *wrong)
 
 
 def surveyed(

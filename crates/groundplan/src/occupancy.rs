@@ -56,6 +56,7 @@ impl Occupancy {
         };
         Self { states: sums.evidence().map(state).collect(), ..Self::default() }
     }
+
     /// And O(edge).
     pub(crate) fn with(self, covered: Covered) -> Self {
         Self { edges: covered.shares, runs: covered.runs, run_offsets: covered.offsets, ..self }

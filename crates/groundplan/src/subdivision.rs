@@ -29,6 +29,10 @@ pub struct Subdivision {
     pub map_area: f64,
 }
 
+/// So many faces or vertices are worth a thread's while.
+const SHARE: usize = 1 << 14;
+
+/// Vertices from pixels to the map frame.
 fn in_metres(frame: &Frame, mut vertices: Vec<[f64; 2]>, threads: usize) -> Vec<[f64; 2]> {
     each(vertices.chunks_mut(SHARE).collect(), threads, |part| {
         for vertex in part {
@@ -37,9 +41,6 @@ fn in_metres(frame: &Frame, mut vertices: Vec<[f64; 2]>, threads: usize) -> Vec<
     });
     vertices
 }
-
-/// So many faces or vertices are worth a thread's while.
-const SHARE: usize = 1 << 14;
 
 impl Subdivision {
     /// From an arrangement, with coordinates in the map frame. Takes its lists over: they are most of the memory.

@@ -1,7 +1,7 @@
 //! Walls across a strip that leave no more than a door: a corridor ends there, and a room behind is no part of it.
 
-use super::corridors::runs;
-use super::turned::Turned;
+use super::runs::runs;
+use super::turned::{Shares, Turned};
 use std::ops::Range;
 
 /// Such a wall bars more than this share of the strip.
@@ -23,19 +23,31 @@ const MARGIN: f64 = 0.1;
 /// What gets along a strip is so much of it wide.
 const GETS_THROUGH: f64 = 0.35;
 
-/// The columns of a strip in which such a wall stands.
-pub fn across(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
-    let (low, high) = (across[0] + MARGIN, across[1] - MARGIN);
-    let is_door = |barred: f64| barred > BARRED && (1.0 - barred) * (high - low) <= DOOR;
-    thin(view, THICK, view.barred_where(range, low, high, is_door))
+/// How much of a strip's columns is barred between its sides.
+struct Within<'a> {
+    barred: Shares<'a>,
+    /// Of each column.
+    counts: Vec<u32>,
+    width: f64,
 }
 
-/// The columns of a strip in which a wall between two docks stands.
-fn docks(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
-    let (low, high) = (across[0] + MARGIN, across[1] - MARGIN);
-    let least = DOCK.max(LONG / (high - low).max(view.cell));
-    let is_wall = |barred: f64| barred > least && (1.0 - barred) * (high - low) <= DOOR;
-    thin(view, THIN, view.barred_where(range, low, high, is_wall))
+impl<'a> Within<'a> {
+    fn new(view: &'a Turned, [low, high]: [f64; 2], range: Range<usize>) -> Self {
+        let (low, high) = (low + MARGIN, high - MARGIN);
+        let barred = view.barred_in(low, high);
+        Self { counts: barred.over(range), barred, width: high - low }
+    }
+
+    /// The columns in which a wall no thicker than that bars more than this share, and leaves no more than a door.
+    fn walls(&self, view: &Turned, share: f64, thickest: f64) -> Vec<bool> {
+        let least = self.barred.least(|barred| barred > share && (1.0 - barred) * self.width <= DOOR);
+        thin(view, thickest, self.counts.iter().map(|count| *count >= least).collect())
+    }
+}
+
+/// The columns of a strip in which such a wall stands.
+pub fn across(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
+    Within::new(view, across, range).walls(view, BARRED, THICK)
 }
 
 /// The columns in which such a wall stands on both sides of a strip, which leads through a door in it.
@@ -66,8 +78,9 @@ pub fn among(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> 
     let more = columns(view, THICK) + 1;
     let wider = range.start.saturating_sub(more)..(range.end + more).min(view.size[0]);
     let first = range.start - wider.start;
-    let docks = docks(view, across, wider.clone());
-    let walls = self::across(view, across, wider).into_iter().zip(docks).map(|(wall, dock)| wall || dock);
+    let within = Within::new(view, across, wider);
+    let docks = within.walls(view, DOCK.max(LONG / within.width.max(view.cell)), THIN);
+    let walls = within.walls(view, BARRED, THICK).into_iter().zip(docks).map(|(wall, dock)| wall || dock);
     walls.skip(first).take(range.len()).collect()
 }
 

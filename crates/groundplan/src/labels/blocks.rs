@@ -2,9 +2,9 @@
 //! with floor before both, oblong, and of a depth that others on the map have too.
 
 use super::beside::{Beside, placed, wider};
-use super::corridors::{close, runs};
 use super::near::Near;
 use super::racks::{DEPTH, Row, apart};
+use super::runs::{close, runs};
 use super::turned::Turned;
 use crate::bits::Bits;
 use std::ops::Range;

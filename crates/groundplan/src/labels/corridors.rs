@@ -6,13 +6,14 @@
 //! the one with the most wall along it is kept, and the others keep what is left of them.
 
 use super::beside::{Beside, placed, wider};
+use super::columns::{BAY, Column, NARROWED, Side, Walled, count};
 use super::recall::{Key, Recall};
-use super::turned::{IMPASSABLE, Turned};
+use super::runs::{best_pieces, runs};
+use super::turned::{BARRED, IMPASSABLE, Turned};
 use super::{Evidence, barriers, mouths, ragged};
 use crate::bands::map_each;
-use crate::bits::Bits;
 use crate::parameters::Parameters;
-use std::ops::{AddAssign, Range};
+use std::ops::Range;
 
 /// A strip of free space along one direction, in the direction's own places (metres along and across).
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +33,9 @@ pub struct Strip {
     /// Where it begins and ends without what lies beyond a gap longer than a bay and is no more than a speck, along.
     pub held: [f64; 2],
 }
+
+/// Of a strip of which it is not told what of it is held.
+pub const UNTOLD: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 impl Strip {
     /// Free width, metres.
@@ -55,38 +59,20 @@ impl Strip {
     }
 }
 
-/// A side's gap up to this long is an empty bay, metres.
-const BAY: f64 = 2.9;
 /// The gap of a missing post, in pitches.
 const MISSING: f64 = 2.1;
-/// Pieces of side shorter than this are specks, metres.
-const SHORTEST_SIDE: f64 = 0.25;
-/// Structure on a line within a strip blocks it when it is so long, with gaps of so much, metres.
-const FACE: f64 = 0.6;
-const FACE_GAP: f64 = 0.3;
 /// Lines this near to a strip's side belong to it, metres.
 const INNER: f64 = 0.45;
 /// Walls lie this far within the strip's sides, metres.
 const MARGIN: f64 = 0.2;
-/// What speaks against a corridor, in columns that speak for it: an opening at a side, and a strip that is blocked.
-const OPEN: f64 = 0.15;
-const BLOCKED: f64 = 6.0;
-/// Structure along the strip between its sides: another wall, or the face of a pallet.
-const PARTED: f64 = 1.0;
 /// Where the strip just beyond a side, from so far to so far, metres, is not free by this share, the side holds without
 /// structure on it: a wall too faint to be occupied, or goods behind the posts.
 const BESIDE: (f64, f64) = (0.1, 0.5);
 const BEYOND: f64 = 0.8;
-/// Up to this share, what stands in the strip is clutter that one passes by.
-const NARROWED: f64 = 0.5;
-/// No wall along a corridor makes up for one across it.
-const CLOSED: f64 = 1e6;
 /// A side with less than this share of structure on it cannot part two corridors.
 const DENSE: f64 = 0.6;
 /// Least share of a corridor's length that is walled on both sides.
 const LEAST_WALLED: f64 = 0.2;
-/// A side begins so near to the mouth of a way beside it, metres.
-const JAMB: f64 = 0.6;
 /// What aisles open into side by side is so many times as wide as they are.
 const LED_TO: f64 = 0.65;
 /// And so much of its side between them has structure on it.
@@ -149,6 +135,9 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
     // Now that the ways are known, what lies before them is known to be no gap.
     let more = map_each(views.len(), evidence.threads, |n| {
         let mouths = mouths::of(views, &views[n], &strips);
+        if mouths.iter().all(Vec::is_empty) {
+            return Vec::new();
+        }
         let family = Family::new(evidence, views, &views[n], &mouths);
         let whole = family.before_mouths(&mouths);
         let known: Vec<Strip> = strips.iter().filter(|strip| strip.direction == n).cloned().collect();
@@ -213,7 +202,6 @@ impl Candidate {
         Self { sides: sides.map(|n| n as u32), columns, score: strip.score, bays: strip.bays, is_corridor }
     }
 
-    /// Of which it is not said what of it holds.
     fn strip(&self, view: &Turned) -> Strip {
         let along = self.columns.map(|column| view.along(column as usize));
         Strip {
@@ -223,7 +211,7 @@ impl Candidate {
             score: self.score,
             bays: self.bays,
             is_ragged: false,
-            held: along,
+            held: UNTOLD,
         }
     }
 }
@@ -363,7 +351,7 @@ impl<'a> Family<'a> {
         let view = self.view;
         let within = [across[0] + margin, across[1] - margin];
         let blocked = view.some_blocked(range.clone(), within[0], within[1]);
-        let closed = view.some_closed(range.clone(), within[0], within[1]);
+        let barred = view.barred_where(range.clone(), within[0], within[1], |barred| barred > BARRED);
         let beyond = beyond.map(|[low, high]| view.blocked_where(range.clone(), low, high, |share| share > BEYOND));
         let first = range.start;
         let holds = |n: usize, c: usize| sides[n].walls.get(c) || beyond[n][c - first];
@@ -371,7 +359,7 @@ impl<'a> Family<'a> {
         range
             .map(|c| Column {
                 blocked: blocked[c - first],
-                closed: closed[c - first] || barriers[c - first],
+                closed: blocked[c - first] > IMPASSABLE || barred[c - first] || barriers[c - first],
                 parted: parts.iter().any(|part| part.faces.get(c)),
                 walled: holds(0, c) && holds(1, c),
                 near: sides.iter().any(|side| side.near.get(c)),
@@ -505,180 +493,4 @@ impl<'a> Family<'a> {
         let walled = count(columns, |c| c.walled && c.blocked < NARROWED);
         structured && walled >= LEAST_WALLED * columns.len() as f64
     }
-}
-
-/// A line as the side of a strip, column by column.
-struct Side {
-    /// Structure, or the gap of an empty bay.
-    walls: Bits,
-    /// Structure, or a gap too short for a bay.
-    near: Bits,
-    /// Structure of some length: more than posts.
-    faces: Bits,
-}
-
-impl Side {
-    fn new(view: &Turned, line: usize, bay: f64, racked: bool, mouths: &[Range<usize>]) -> Self {
-        let cells = |metres: f64| (metres / view.cell) as usize;
-        let joined = |from: &Bits, gap: f64, shortest: f64| {
-            let mut joined = Bits::new(view.size[0]);
-            let runs = from.joined(0..view.size[0], cells(gap)).into_iter();
-            runs.filter(|run| run.len() >= cells(shortest)).for_each(|run| joined.fill(run));
-            joined
-        };
-        // Where bays recur, their posts are the side of the way along them.
-        let posts = if racked { &view.touched[line] } else { &view.covered[line] };
-        let mut walls = joined(posts, bay, SHORTEST_SIDE);
-        if !mouths.is_empty() {
-            for mouth in mouths {
-                walls.fill(mouth.clone());
-            }
-            walls = joined(&walls, JAMB, SHORTEST_SIDE);
-        }
-        Self { walls, near: joined(posts, BAY / 2.0, 0.0), faces: joined(&view.covered[line], FACE_GAP, FACE) }
-    }
-}
-
-/// What one column of a strip holds.
-#[allow(clippy::struct_excessive_bools)] // Each is a question that is asked of the column.
-#[derive(Clone, Copy)]
-struct Column {
-    /// Share of it that is not free.
-    blocked: f64,
-    /// Nothing gets through.
-    closed: bool,
-    /// Structure lies along it between its sides.
-    parted: bool,
-    /// Structure lies on both sides, or a bay's gap in it.
-    walled: bool,
-    /// And not both sides are in the gap of a bay, or in the mouths of a way that crosses.
-    near: bool,
-    /// On which sides structure of some length lies.
-    faces: [bool; 2],
-    /// On which sides the ground beyond is not free.
-    held: [bool; 2],
-}
-
-impl Column {
-    /// What a column says for a corridor or against it.
-    fn score(self) -> f64 {
-        let against = if self.closed {
-            CLOSED
-        } else if self.blocked > NARROWED {
-            BLOCKED * self.blocked
-        } else {
-            2.0 * self.blocked
-        };
-        (if self.parted {
-            -PARTED
-        } else if self.walled {
-            1.0
-        } else {
-            -OPEN
-        }) - against
-    }
-}
-
-/// Of a strip's columns so many hold.
-fn count(columns: &[Column], is: impl Fn(&Column) -> bool) -> f64 {
-    columns.iter().filter(|column| is(column)).count() as f64
-}
-
-/// How many of a strip's columns are walled.
-struct Walled {
-    /// Not merely by the gap of a bay on both sides.
-    near: f64,
-    /// With structure of some length on one side at least, and on both.
-    once: f64,
-    twice: f64,
-    /// With such on the side that has less of it.
-    weaker: f64,
-}
-
-impl Walled {
-    fn new(columns: &[Column]) -> Self {
-        let faced = |least: usize| count(columns, |c| c.walled && c.faces.iter().filter(|f| **f).count() >= least);
-        let on = |side: usize| count(columns, |c| c.walled && c.faces[side]);
-        Self { near: count(columns, |c| c.walled && c.near), once: faced(1), twice: faced(2), weaker: on(0).min(on(1)) }
-    }
-}
-
-/// All maximal pieces with the greatest sums (Ruzzo and Tompa 1999): from, to.
-pub fn best_pieces<T: Copy + Default + PartialOrd + AddAssign>(scores: &[T]) -> Vec<(usize, usize)> {
-    struct Piece<T> {
-        from: usize,
-        to: usize,
-        before: T,
-        after: T,
-        /// The last piece ahead of it that begins at a lower sum.
-        lower: Option<usize>,
-    }
-    let zero = T::default();
-    let mut pieces: Vec<Piece<T>> = Vec::new();
-    let (mut n, mut sum) = (0, zero);
-    while n < scores.len() {
-        let (from, before) = (n, sum);
-        while n < scores.len() && scores[n] > zero {
-            sum += scores[n];
-            n += 1;
-        }
-        if n == from {
-            sum += scores[n];
-            n += 1;
-            continue;
-        }
-        let mut piece = Piece { from, to: n, before, after: sum, lower: pieces.len().checked_sub(1) };
-        while let Some(place) = piece.lower {
-            let other = &pieces[place];
-            if other.before < piece.before {
-                if other.after >= piece.after {
-                    break;
-                }
-                (piece.from, piece.before, piece.lower) = (other.from, other.before, other.lower);
-                pieces.truncate(place);
-            } else {
-                piece.lower = other.lower;
-            }
-        }
-        pieces.push(piece);
-    }
-    pieces.into_iter().map(|piece| (piece.from, piece.to)).collect()
-}
-
-/// Fills gaps of up to `longest` between set flags.
-pub fn close(flags: &mut [bool], longest: usize) {
-    let mut gap = next(flags, next(flags, 0, true), false);
-    while gap < flags.len() {
-        let end = next(flags, gap, true);
-        if end < flags.len() && end - gap <= longest {
-            flags[gap..end].fill(true);
-        }
-        gap = next(flags, end, false);
-    }
-}
-
-/// Runs of flags that are `wanted`: from, to.
-pub fn runs(flags: &[bool], wanted: bool) -> Vec<(usize, usize)> {
-    let mut found = Vec::new();
-    let mut from = next(flags, 0, wanted);
-    while from < flags.len() {
-        let to = next(flags, from, !wanted);
-        found.push((from, to));
-        from = next(flags, to, wanted);
-    }
-    found
-}
-
-/// The next flag that is `wanted`, from one on, or the end.
-fn next(flags: &[bool], from: usize, wanted: bool) -> usize {
-    // Many at a time: mostly they are alike.
-    const MANY: usize = 32;
-    let mut at = from;
-    for chunk in flags[from..].chunks_exact(MANY) {
-        if chunk.contains(&wanted) {
-            break;
-        }
-        at += MANY;
-    }
-    flags[at..].iter().position(|&flag| flag == wanted).map_or(flags.len(), |n| at + n)
 }

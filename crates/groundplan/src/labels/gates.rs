@@ -3,7 +3,7 @@
 
 use super::Evidence;
 use super::beside::{Beside, placed, wider};
-use super::corridors::Strip;
+use super::corridors::{Strip, UNTOLD};
 use super::look::Look;
 use super::racks::{self, Row};
 use super::sections::{Columns, Free};
@@ -38,10 +38,19 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
         }
     }
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
-    let sure: Vec<&Strip> = strips.iter().filter(|strip| !strip.bays).chain(&gates).collect();
+    let mut sure: Vec<Vec<f64>> = vec![Vec::new(); views.len()];
+    for strip in strips.iter().filter(|strip| !strip.bays).chain(&gates) {
+        sure[strip.direction].push(strip.width());
+    }
+    for widths in &mut sure {
+        widths.sort_by(f64::total_cmp);
+    }
     let is_told = |gate: &Strip| {
-        let others: Vec<f64> = sure.iter().filter(|s| s.direction == gate.direction).map(|s| s.width()).collect();
-        others.is_empty() || others.iter().any(|width| (width - gate.width()).abs() <= ALIKE * gate.width())
+        let (widths, width) = (&sure[gate.direction], gate.width());
+        // The nearest is beside where its own would be.
+        let next = widths.partition_point(|other| *other < width);
+        let mut nearest = widths[next.saturating_sub(1)..].iter().take(2);
+        widths.is_empty() || nearest.any(|other| (other - width).abs() <= ALIKE * width)
     };
     doubtful.retain(is_told);
     gates.extend(doubtful);
@@ -210,7 +219,7 @@ fn strip(view: &Turned, other: &Turned, row: &Row, [from, to]: [f64; 2], middles
         score: row.across[1] - row.across[0],
         bays: false,
         is_ragged: false,
-        held: [f64::NEG_INFINITY, f64::INFINITY],
+        held: UNTOLD,
     }
 }
 

@@ -5,7 +5,8 @@
 //! long way that nothing narrows needs no more of a side than machines or pallets in a row, with gaps between them.
 
 use super::beside::Beside;
-use super::corridors::{self, Strip, best_pieces, close};
+use super::corridors::{self, Strip, UNTOLD};
+use super::runs::{best_pieces, close};
 use super::turned::{IMPASSABLE, Shares, Turned};
 use super::{Evidence, barriers};
 use crate::bands::map_each;
@@ -155,8 +156,7 @@ impl Short {
 
 /// A way whose sides are no lines.
 fn ragged(view: &Turned, along: [f64; 2], across: [f64; 2], score: f64) -> Strip {
-    let held = [f64::NEG_INFINITY, f64::INFINITY];
-    Strip { direction: view.direction, along, across, score, bays: false, is_ragged: true, held }
+    Strip { direction: view.direction, along, across, score, bays: false, is_ragged: true, held: UNTOLD }
 }
 
 /// True when two strips share so much of their width that one of them is too much.

@@ -3,9 +3,9 @@
 //! A bay is as wide as the posts recur, and a row of empty ones is free from one end to the other. A way has another
 //! width, or the row is closed on both its sides.
 
-use super::corridors::runs;
 use super::look::{BLOCKED, Look};
 use super::racks::Row;
+use super::runs::runs;
 use super::turned::{Shares, Turned};
 use crate::grid::Frame;
 

@@ -24,7 +24,7 @@ const STRONG: (f64, f64) = (2.0, 0.08);
 
 /// Nothing gets through where more than this share is not free, or more than this is barred by a wall, be it thin.
 pub const IMPASSABLE: f64 = 0.7;
-const BARRED: f64 = 0.7;
+pub const BARRED: f64 = 0.7;
 
 /// One direction's view of the map. Places along it (u) and across it (v) are metres in the map frame turned by the
 /// direction: u = p.t with t = (cos, sin), v = p.n with n = (-sin, cos).
@@ -327,7 +327,7 @@ impl Turned {
 
     /// The same of [`Turned::barred`].
     pub fn barred_where(&self, columns: Range<usize>, low: f64, high: f64, is: impl Fn(f64) -> bool) -> Vec<bool> {
-        let of = self.shares_in(What::Barred, low, high);
+        let of = self.barred_in(low, high);
         of.reached(columns, of.least(is))
     }
 
@@ -339,6 +339,11 @@ impl Turned {
     /// The same of what is occupied.
     pub fn occupied_in(&self, low: f64, high: f64) -> Shares<'_> {
         self.shares_in(What::Occupied, low, high)
+    }
+
+    /// The same of what is barred.
+    pub fn barred_in(&self, low: f64, high: f64) -> Shares<'_> {
+        self.shares_in(What::Barred, low, high)
     }
 
     fn shares_in(&self, what: What, low: f64, high: f64) -> Shares<'_> {
