@@ -1,148 +1,22 @@
-//! Dictionaries of arrays <-> the method's structures.
+//! What the stages make <-> dictionaries of arrays.
 
+use crate::named::{Named, demand, list, number, pairs};
 use groundplan::adjacency::Adjacency;
 use groundplan::arrangement::NONE;
 use groundplan::directions::Directions;
 use groundplan::gradients::Gradients;
-use groundplan::labels::Pattern;
 use groundplan::lines::Lines;
 use groundplan::occupancy::Occupancy;
-use groundplan::parameters::{Parameter, Range};
 use groundplan::radiograms::Radiogram;
 use groundplan::subdivision::Subdivision;
 use groundplan::sums::{FaceSums, Sums};
 use groundplan::walls::{Wall, WallKind, Walls};
 use groundplan::wavelets::Response;
-use groundplan::{Frame, Given, Grid, Label, ParameterError, Parameters, State, Table, Value};
-use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use groundplan::{Frame, Given, State};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyString};
-
-/// A grid as Python holds it: pixels (height, width) uint8 row after row, whether the first row is the lowest, values
-/// (256,) int8, states (256,) uint8, resolution and origin.
-#[derive(FromPyObject)]
-pub struct Layout<'py>(
-    PyReadonlyArray2<'py, u8>,
-    bool,
-    PyReadonlyArray1<'py, i8>,
-    PyReadonlyArray1<'py, u8>,
-    f64,
-    [f64; 3],
-);
-
-impl Layout<'_> {
-    /// Where the grid lies.
-    pub fn frame(&self) -> Frame {
-        let shape = self.0.as_array().dim();
-        Frame::new(shape.1, shape.0, self.4, self.5)
-    }
-
-    /// Runs a stage over the pixels where they lie, with Python's lock released.
-    pub fn with_grid<T: Send>(&self, py: Python<'_>, stage: impl FnOnce(&Grid) -> T + Send) -> PyResult<T> {
-        let Frame { width, height, .. } = self.frame();
-        self.with_part(py, (height, 0), [(0, height), (0, width)], 0, |grid, _| stage(grid))
-    }
-}
-
-/// Rows of a grid that are at hand, counted from the bottom: the map's height, and the lowest row of those.
-type Held = (usize, usize);
-
-/// From, to.
-type Span = (usize, usize);
-
-impl Layout<'_> {
-    /// Runs a stage over some rows and columns of a map, of which only the layout's rows are at hand; the stage needs
-    /// those within `reach` of the rows.
-    pub fn with_part<T: Send>(
-        &self,
-        py: Python<'_>,
-        (height, first): Held,
-        [rows, columns]: [Span; 2],
-        reach: usize,
-        stage: impl FnOnce(&Grid, [std::ops::Range<usize>; 2]) -> T + Send,
-    ) -> PyResult<T> {
-        let shape = self.0.as_array().dim();
-        let held = first..first.saturating_add(shape.0);
-        let frame = Frame::new(shape.1, height, self.4, self.5);
-        let within = |(from, to): Span, end: usize| from <= to && to <= end;
-        let sees = rows.0.saturating_sub(reach) >= held.start && rows.1.saturating_add(reach).min(height) <= held.end;
-        demand(
-            held.end <= height && within(rows, height) && within(columns, shape.1) && sees,
-            "the rows asked for are not at hand",
-        )?;
-        let pixels = self.0.as_slice()?;
-        let table = self.table()?;
-        let grid = Grid::part(pixels, self.1, &table, frame, held);
-        Ok(py.detach(|| stage(&grid, [rows.0..rows.1, columns.0..columns.1])))
-    }
-
-    fn table(&self) -> PyResult<Table> {
-        let (values, states) = (self.2.as_slice()?, self.3.as_slice()?);
-        let values: &[i8; 256] = values.try_into().map_err(|_| PyValueError::new_err("256 values"))?;
-        let states: &[u8; 256] = states.try_into().map_err(|_| PyValueError::new_err("256 states"))?;
-        Ok(Table::new(values, states))
-    }
-}
-
-/// A dictionary being filled.
-pub struct Named<'py>(Bound<'py, PyDict>);
-
-impl<'py> Named<'py> {
-    pub fn new(py: Python<'py>) -> Self {
-        Self(PyDict::new(py))
-    }
-
-    pub fn with(self, name: &str, value: impl IntoPyObject<'py>) -> PyResult<Self> {
-        self.0.set_item(name, value)?;
-        Ok(self)
-    }
-
-    pub fn list<T: Element>(self, name: &str, values: Vec<T>) -> PyResult<Self> {
-        let array = PyArray1::from_vec(self.0.py(), values).into_any();
-        self.with(name, array)
-    }
-
-    pub fn pairs<T: Element>(self, name: &str, values: Vec<[T; 2]>) -> PyResult<Self> {
-        let count = values.len();
-        let flat = PyArray1::from_vec(self.0.py(), values.into_flattened());
-        let array = flat.reshape([count, 2])?.into_any();
-        self.with(name, array)
-    }
-
-    pub fn done(self) -> Bound<'py, PyDict> {
-        self.0
-    }
-}
-
-fn item<'py>(dict: &Bound<'py, PyDict>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-    dict.get_item(name)?.ok_or_else(|| PyValueError::new_err(format!("{name} is missing")))
-}
-
-fn number<'py, T: FromPyObjectOwned<'py>>(dict: &Bound<'py, PyDict>, name: &str) -> PyResult<T> {
-    item(dict, name)?.extract().map_err(Into::into)
-}
-
-fn list<T: Element + Copy>(dict: &Bound<'_, PyDict>, name: &str) -> PyResult<Vec<T>> {
-    let item = item(dict, name)?;
-    let array = item.cast::<PyArray1<T>>()?.readonly();
-    Ok(array.as_array().to_vec())
-}
-
-fn pairs<T: Element + Copy>(dict: &Bound<'_, PyDict>, name: &str) -> PyResult<Vec<[T; 2]>> {
-    let item = item(dict, name)?;
-    let array = item.cast::<PyArray2<T>>()?.readonly();
-    let array = array.as_array();
-    if array.ncols() != 2 {
-        return Err(PyValueError::new_err(format!("{name} has {} columns and not 2", array.ncols())));
-    }
-    Ok(array.rows().into_iter().map(|row| [row[0], row[1]]).collect())
-}
-
-/// Arrays from outside must fit one another: the method trusts what its own stages made.
-fn demand(fits: bool, sentence: &str) -> PyResult<()> {
-    if fits { Ok(()) } else { Err(PyValueError::new_err(sentence.to_owned())) }
-}
+use pyo3::types::PyDict;
 
 /// Lines and the directions that they name.
 fn demand_directions(lines: &Lines, directions: &Directions) -> PyResult<()> {
@@ -237,75 +111,6 @@ fn signed(ids: Vec<u32>) -> Vec<i32> {
 
 fn unsigned(ids: &[i32]) -> Vec<u32> {
     ids.iter().map(|&id| u32::try_from(id).unwrap_or(NONE)).collect()
-}
-
-pub fn parameters(dict: &Bound<'_, PyDict>) -> PyResult<Parameters> {
-    let mut parameters = Parameters::default();
-    for (name, value) in dict {
-        let name: String = name.extract()?;
-        let value = to_value(&name, &value)?;
-        parameters.set(&name, value).map_err(|fault| raise(dict.py(), &fault))?;
-    }
-    Ok(parameters)
-}
-
-fn to_value(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
-    if value.is_none() {
-        return Ok(Value::Auto);
-    }
-    if let Ok(word) = value.cast::<PyString>() {
-        return Ok(Value::Word(word.to_string()));
-    }
-    if !value.is_instance_of::<PyBool>() {
-        if let Ok(number) = value.extract::<f64>() {
-            return Ok(Value::Number(number));
-        }
-        if let Ok(numbers) = value.extract::<Vec<f64>>() {
-            return Ok(Value::Numbers(numbers));
-        }
-    }
-    let message = format!("{name} cannot be {}", value.repr()?);
-    let fault = ParameterError { code: "parameter.range", message, hint: "a number, a word or a list".to_owned() };
-    Err(raise(value.py(), &fault))
-}
-
-/// The one error that crosses over: Groundplan's own, with its code and its hint.
-fn raise(py: Python<'_>, fault: &ParameterError) -> PyErr {
-    let made = py
-        .import("groundplan._errors")
-        .and_then(|module| module.getattr("ParameterError"))
-        .and_then(|class| class.call1((fault.code, &fault.message, &fault.hint)));
-    made.map_or_else(|error| error, PyErr::from_value)
-}
-
-fn from_value<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
-    match value {
-        Value::Auto => Ok(py.None().into_bound(py)),
-        Value::Number(n) => Ok(n.into_pyobject(py)?.into_any()),
-        Value::Word(word) => Ok(word.into_pyobject(py)?.into_any()),
-        Value::Numbers(ns) => ns.into_pyobject(py),
-    }
-}
-
-pub fn values<'py>(py: Python<'py>, parameters: &Parameters) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    for (name, value) in parameters.values() {
-        dict.set_item(name, from_value(py, &value)?)?;
-    }
-    Ok(dict)
-}
-
-pub fn table_row<'py>(py: Python<'py>, row: &Parameter) -> PyResult<Bound<'py, PyDict>> {
-    let words = if let Range::Word(words) = row.range { words.to_vec() } else { Vec::new() };
-    Ok(Named::new(py)
-        .with("name", row.name)?
-        .with("unit", row.unit)?
-        .with("default", from_value(py, &row.default())?)?
-        .with("range", row.range.to_string())?
-        .with("words", words)?
-        .with("sentence", row.sentence)?
-        .with("section", row.section)?
-        .done())
 }
 
 pub fn from_gradients(py: Python<'_>, made: Gradients) -> PyResult<Bound<'_, PyDict>> {
@@ -511,71 +316,4 @@ pub fn walls(dict: &Bound<'_, PyDict>) -> PyResult<Walls> {
 
 pub fn from_adjacency(py: Python<'_>, made: Adjacency) -> PyResult<Bound<'_, PyDict>> {
     Ok(Named::new(py).pairs("faces", made.faces)?.list("edges", made.edges)?.list("connected", made.connected)?.done())
-}
-
-fn kind(label: &Label) -> &'static str {
-    match label {
-        Label::Corridor { .. } => "corridor",
-        Label::Junction { .. } => "junction",
-        Label::Region { .. } => "region",
-        Label::Door { .. } => "door",
-        Label::Rack { .. } => "rack",
-        Label::Pillar { .. } => "pillar",
-    }
-}
-
-/// A label is a dictionary of plain values, as in the survey's JSON.
-pub fn from_label<'py>(py: Python<'py>, label: &Label, confidence: f64) -> PyResult<Bound<'py, PyDict>> {
-    let named = Named::new(py).with("kind", kind(label))?;
-    let named = match label {
-        Label::Corridor { faces, polygon, axis, width, name } => named
-            .with("faces", faces)?
-            .with("polygon", polygon)?
-            .with("axis", axis)?
-            .with("width", *width)?
-            .with("name", name)?,
-        Label::Junction { kind, faces, polygon, at, corridors } => named
-            .with("type", kind.name())?
-            .with("faces", faces)?
-            .with("polygon", polygon)?
-            .with("at", at)?
-            .with("corridors", corridors)?,
-        Label::Region { purpose, faces, polygon, holes, at, area, name } => named
-            .with("use", purpose.name())?
-            .with("faces", faces)?
-            .with("polygon", polygon)?
-            .with("holes", holes)?
-            .with("at", at)?
-            .with("area", *area)?
-            .with("name", name)?,
-        Label::Door { at, axis, width, between } => {
-            named.with("at", at)?.with("axis", axis)?.with("width", *width)?.with("between", between)?
-        }
-        Label::Rack { faces, polygon, axis, width, pitch, phase, name } => named
-            .with("faces", faces)?
-            .with("polygon", polygon)?
-            .with("axis", axis)?
-            .with("width", *width)?
-            .with("pitch", *pitch)?
-            .with("phase", *phase)?
-            .with("name", name)?,
-        Label::Pillar { at, width, pattern, name } => {
-            named.with("at", at)?.with("width", *width)?.with("pattern", *pattern)?.with("name", name)?
-        }
-    };
-    Ok(named.with("confidence", confidence)?.done())
-}
-
-/// Patterns are few.
-pub fn from_patterns<'py>(py: Python<'py>, made: &[Pattern]) -> PyResult<Vec<Bound<'py, PyDict>>> {
-    let convert = |pattern: &Pattern| {
-        Ok(Named::new(py)
-            .with("kind", pattern.kind.name())?
-            .with("labels", &pattern.labels)?
-            .with("angle", pattern.angle)?
-            .with("pitch", pattern.pitch)?
-            .with("phase", pattern.phase)?
-            .done())
-    };
-    made.iter().map(convert).collect()
 }

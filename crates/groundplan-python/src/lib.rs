@@ -2,6 +2,9 @@
 
 mod convert;
 mod labels;
+mod layout;
+mod named;
+mod parameters;
 #[allow(clippy::needless_pass_by_value)]
 mod queries;
 
@@ -12,11 +15,11 @@ mod queries;
 mod _core {
     #[pymodule_export]
     use crate::convert::Memory;
-    use crate::convert::{self, Layout, Named};
     #[pymodule_export]
     use crate::labels::Labels;
     #[pymodule_export]
     use crate::queries::{Locator, Ways};
+    use crate::{convert, labels::from_patterns, layout::Layout, named::Named, parameters};
     use groundplan::{Given, subdivision::Subdivision, sums::FaceSums, walls};
     use groundplan::{TABLE, adjacency, arrangement, directions, gradients, labels, lines, occupancy, radiograms};
     use numpy::PyArray2;
@@ -32,13 +35,13 @@ mod _core {
     /// Rows of TABLE: name, unit, default, range, sentence, section.
     #[pyfunction]
     fn table(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-        TABLE.iter().map(|row| convert::table_row(py, row)).collect()
+        TABLE.iter().map(|row| parameters::row(py, row)).collect()
     }
 
     /// Every parameter's value, with those of `parameters` set.
     #[pyfunction]
     fn resolve<'py>(py: Python<'py>, parameters: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
-        convert::values(py, &convert::parameters(parameters)?)
+        parameters::values(py, &parameters::read(parameters)?)
     }
 
     /// All stages in a row, but for those that are given; the gradients are kept where they will be wanted again.
@@ -51,7 +54,7 @@ mod _core {
         given: &Bound<'py, PyDict>,
         keep: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let parameters = convert::parameters(parameters)?;
+        let parameters = parameters::read(parameters)?;
         let given = Given { keep, ..convert::given(given, &layout.frame())? };
         let made = layout.with_grid(py, |grid| groundplan::survey(grid, &parameters, given, threads))?;
         // There is a face at least: none are where they are not kept.
@@ -67,7 +70,7 @@ mod _core {
             .with("occupancy", convert::from_occupancy(py, made.occupancy)?)?
             .with("walls", convert::from_walls(py, made.walls)?)?
             .with("labels", Py::new(py, Labels::new(made.labels, made.confidence))?)?
-            .with("patterns", convert::from_patterns(py, &made.patterns)?)?
+            .with("patterns", from_patterns(py, &made.patterns)?)?
             .with("warnings", made.warnings.into_iter().map(|w| (w.code, w.message)).collect::<Vec<_>>())?
             .done())
     }
@@ -86,7 +89,7 @@ mod _core {
         parameters: &Bound<'py, PyDict>,
         threads: usize,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let parameters = convert::parameters(parameters)?;
+        let parameters = parameters::read(parameters)?;
         let made = layout.with_grid(py, |grid| gradients::find_gradients(grid, &parameters, threads))?;
         convert::from_gradients(py, made)
     }
@@ -102,7 +105,7 @@ mod _core {
         parameters: &Bound<'py, PyDict>,
         threads: usize,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let parameters = convert::parameters(parameters)?;
+        let parameters = parameters::read(parameters)?;
         let reach = gradients::reach(layout.frame().resolution, &parameters);
         let made = layout.with_part(py, held, [rows, columns], reach, |grid, [rows, columns]| {
             gradients::find_gradients_in(grid, rows, columns, &parameters, threads)
@@ -113,7 +116,7 @@ mod _core {
     /// How far a pixel bears on gradients around it, pixels.
     #[pyfunction]
     fn reach(resolution: f64, parameters: &Bound<'_, PyDict>) -> PyResult<usize> {
-        Ok(gradients::reach(resolution, &convert::parameters(parameters)?))
+        Ok(gradients::reach(resolution, &parameters::read(parameters)?))
     }
 
     /// II-A: dominant directions.
@@ -126,7 +129,7 @@ mod _core {
         threads: usize,
     ) -> PyResult<Bound<'py, PyDict>> {
         let frame = layout.frame();
-        let (gradients, parameters) = (convert::gradients_on(gradients, &frame)?, convert::parameters(parameters)?);
+        let (gradients, parameters) = (convert::gradients_on(gradients, &frame)?, parameters::read(parameters)?);
         let made = py.detach(|| directions::find_directions(&frame, &gradients, &parameters, threads));
         convert::from_directions(py, made)
     }
@@ -143,7 +146,7 @@ mod _core {
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let frame = layout.frame();
         let gradients = convert::gradients_on(gradients, &frame)?;
-        let (directions, parameters) = (convert::directions(directions)?, convert::parameters(parameters)?);
+        let (directions, parameters) = (convert::directions(directions)?, parameters::read(parameters)?);
         let made = py.detach(|| radiograms::find_radiograms(&frame, &gradients, &directions, &parameters, threads));
         convert::from_radiograms(py, &made)
     }
@@ -156,7 +159,7 @@ mod _core {
         parameters: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let radiogram = convert::radiogram(radiogram)?;
-        let made = lines::respond(&radiogram, &convert::parameters(parameters)?);
+        let made = lines::respond(&radiogram, &parameters::read(parameters)?);
         convert::from_response(py, &made, radiogram.step)
     }
 
@@ -168,7 +171,7 @@ mod _core {
         parameters: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let radiograms = radiograms.iter().map(convert::radiogram).collect::<PyResult<Vec<_>>>()?;
-        convert::from_lines(py, lines::find_lines(&radiograms, &convert::parameters(parameters)?))
+        convert::from_lines(py, lines::find_lines(&radiograms, &parameters::read(parameters)?))
     }
 
     /// II-C: vertices, edges, faces.
@@ -227,7 +230,7 @@ mod _core {
     ) -> PyResult<Bound<'py, PyDict>> {
         let (directions, lines) = convert::lines_of(directions, lines)?;
         let gradients = convert::gradients_on(gradients, &layout.frame())?;
-        let parameters = convert::parameters(parameters)?;
+        let parameters = parameters::read(parameters)?;
         let made = layout.with_grid(py, |grid| {
             let arrangement = arrangement::arrange(&grid.frame, &directions.angles, &lines, threads);
             let sums = FaceSums::new(grid, &arrangement, 0..grid.frame.height, threads);
@@ -247,7 +250,7 @@ mod _core {
         let (subdivision, occupancy) = (convert::subdivision(subdivision)?, convert::occupancy(occupancy)?);
         let states = occupancy.states.len().min(occupancy.faces.len());
         convert::demand_subdivision(&subdivision, states, occupancy.edges.len())?;
-        convert::from_walls(py, walls::find_walls(&subdivision, &occupancy, &convert::parameters(parameters)?))
+        convert::from_walls(py, walls::find_walls(&subdivision, &occupancy, &parameters::read(parameters)?))
     }
 
     /// II-D, II-E: the dual.
@@ -277,7 +280,7 @@ mod _core {
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let (directions, lines) = convert::lines_of(directions, lines)?;
         let frame = layout.frame();
-        let (gradients, parameters) = (convert::gradients_on(gradients, &frame)?, convert::parameters(parameters)?);
+        let (gradients, parameters) = (convert::gradients_on(gradients, &frame)?, parameters::read(parameters)?);
         let arrangement = arrangement::arrange(&frame, &directions.angles, &lines, threads);
         let subdivision = Subdivision::new(&frame, arrangement, threads);
         let (occupancy, walls) = (convert::occupancy(occupancy)?, convert::walls(walls)?);

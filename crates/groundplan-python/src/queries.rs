@@ -1,6 +1,6 @@
 //! What is asked of a survey again and again: objects that keep an index.
 
-use crate::convert::{self, Layout};
+use crate::{convert, layout::Layout};
 use groundplan::locate::Polygons;
 use groundplan::route::Evidence;
 use groundplan::{Frame, locate, route};
