@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import zoo
+from PIL import Image
 from zoo import OPEN, PADDED, RESOLUTION, TURNS, ZOO
 
 import groundplan
@@ -192,6 +193,18 @@ def test_a_kind_of_label_that_there_is_not_is_no_empty_list() -> None:
     with pytest.raises(ParameterError, match="'corridr'") as refused:
         room.of_kind("corridr")
     assert refused.value.code == "label.kind" and "corridor" in str(refused.value.hint)
+
+
+def test_a_file_is_surveyed_as_the_map_read_from_it(tmp_path: Path) -> None:
+    path = tmp_path / "room.png"
+    Image.fromarray(ZOO["single_room"]()).save(path)
+    read = groundplan.read(path, resolution=RESOLUTION, negate=True)
+    found = groundplan.survey(path, resolution=RESOLUTION, reading={"negate": True})
+    assert found.to_json() == groundplan.survey(read).to_json()
+    with pytest.raises(MapError, match=r"there is no 'negat'"):
+        groundplan.survey(path, resolution=RESOLUTION, reading={"negat": True})
+    with pytest.raises(MapError, match=r"nowhere\.yaml"):
+        groundplan.survey("nowhere.yaml")
 
 
 def test_what_is_wrong_is_said_by_name() -> None:

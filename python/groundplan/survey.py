@@ -36,7 +36,7 @@ from groundplan._results import (
     record,
 )
 from groundplan._tree import LABELS, Table, from_tree, strange_reading, to_tree, written
-from groundplan.maps import Map, MapWarning, from_array
+from groundplan.maps import Map, MapWarning, from_array, read
 from groundplan.maps.map_server import shown
 from groundplan.parameters import named, resolve
 from groundplan.stages import cores, layout, made, run, taken
@@ -367,7 +367,8 @@ def survey(
     ----------
     map
         A `Map`, or an array: uint8 as a picture of a map (0 occupied, 205 unknown, 254 free, top row first), int8 as
-        the data of a nav_msgs/OccupancyGrid (-1, 0..100, lowest row first), bool as occupied or not (top row first).
+        the data of a nav_msgs/OccupancyGrid (-1, 0..100, lowest row first), bool as occupied or not (top row first). Or
+        a map's file, as `groundplan.read` takes it.
     resolution, origin
         Of an array or a file: metres per pixel, and the pose of its lower left corner (m, m, rad).
     directions, lines
@@ -378,8 +379,8 @@ def survey(
         Keep for `Survey.update` the gradients, 13 bytes for each edge pixel, and what was found on the way to the
         labels; the first update finds them again if not.
     client
-        A ``dask.distributed.Client``: its workers do what has to be done on pixels. `map` may be a file's path then; of
-        an 8-bit PGM, a Zarr array and a GeoTIFF the workers read the rows that they need by themselves.
+        A ``dask.distributed.Client``: its workers do what has to be done on pixels. Of a file that is an 8-bit PGM, a
+        Zarr array or a GeoTIFF they read the rows that they need by themselves.
     reading
         Of a file's path: how to read it, by the names of `groundplan.read`.
     **parameters
@@ -390,23 +391,25 @@ def survey(
     ParameterError
         A parameter that is not known or out of its range; ``stage.input`` for directions or lines that do not fit.
     MapError
-        An array that is no map.
+        An array that is no map; what `groundplan.read` raises for a file.
     GroundplanError
         ``cluster.client``; ``cluster.path``, ``cluster.version``, ``cluster.failed`` for what goes wrong on workers.
     """
     _check_reading(map, resolution, origin, client, reading or {})
     stages = (("directions", Directions, directions), ("lines", Lines, lines))
     own = {name: taken(kind, name, value) for name, kind, value in stages if value is not None}
-    if client is not None and isinstance(map, str | os.PathLike):
-        from groundplan import _cluster
-
+    if isinstance(map, str | os.PathLike):
         resolve(parameters)
-        frame = {"resolution": resolution} | ({"origin": origin} if origin is not None else {})
-        site = _cluster.open_map(map, frame | (reading or {}), client)
-        return _cluster.survey_site(site, client, parameters, threads, own, keep=keep)[0]
-    if not isinstance(map, Map):
+        words = {"resolution": resolution, "origin": origin, **(reading or {})}
+        if client is not None:
+            from groundplan import _cluster
+
+            site = _cluster.open_map(map, {name: word for name, word in words.items() if word is not None}, client)
+            return _cluster.survey_site(site, client, parameters, threads, own, keep=keep)[0]
+        map = read(map, **words)
+    elif not isinstance(map, Map):
         if not is_array(map):
-            raise MapError("map.input", f"{shown(map)} is no map", "read it first: groundplan.read(path)")
+            raise MapError("map.input", f"{shown(map)} is no map", "a Map, an array or a file's path is one")
         if resolution is None:
             raise MapError("map.resolution", "an array needs its resolution", "survey(array, resolution=0.05)")
         map = from_array(np.asarray(map), resolution, (0.0, 0.0, 0.0) if origin is None else tuple(origin))
