@@ -73,7 +73,8 @@ const BEYOND: f64 = 0.8;
 const DENSE: f64 = 0.6;
 /// Least share of a corridor's length that is walled on both sides.
 const LEAST_WALLED: f64 = 0.2;
-/// What aisles open into side by side is so many times as wide as they are.
+/// What aisles open into side by side, so many at least, is so many times as wide as they are.
+const LEAST_MOUTHS: usize = 2;
 const LED_TO: f64 = 0.65;
 /// And so much of its side between them has structure on it.
 const BETWEEN: f64 = 0.5;
@@ -139,7 +140,7 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
             return Vec::new();
         }
         let family = Family::new(evidence, views, &views[n], &mouths);
-        let whole = family.before_mouths(&mouths);
+        let whole = family.before_mouths(&mouths, threads);
         let known: Vec<Strip> = strips.iter().filter(|strip| strip.direction == n).cloned().collect();
         family.best(whole, &known)
     });
@@ -265,40 +266,55 @@ impl<'a> Family<'a> {
     }
 
     /// The corridors into which others open side by side.
-    fn before_mouths(&self, mouths: &[Vec<Range<usize>>]) -> Vec<Candidate> {
+    fn before_mouths(&self, mouths: &[Vec<Range<usize>>], threads: usize) -> Vec<Candidate> {
         let offsets = &self.view.offsets;
-        let mut found = Vec::new();
-        for low in 0..offsets.len() {
+        let above = |low: usize| {
+            let mut found = Vec::new();
             for high in low + 1..offsets.len() {
                 let (across, sides) = ([offsets[low], offsets[high]], [low, high]);
                 let width = across[1] - across[0];
                 if width > self.parameters.labels_max_width {
                     break;
                 }
-                if width < self.parameters.labels_min_width || sides.iter().all(|&side| mouths[side].is_empty()) {
+                let led_to = |strip: &Strip| sides.iter().any(|&side| self.is_led_to(strip, side, &mouths[side]));
+                let may_be = |columns: &Range<usize>| {
+                    sides.iter().any(|&side| self.opening(&mouths[side], width, columns).count() >= LEAST_MOUTHS)
+                };
+                if width < self.parameters.labels_min_width || !may_be(&(0..self.view.size[0])) {
                     continue;
                 }
-                for open in self.open(across) {
+                for open in self.open(across).into_iter().filter(may_be) {
                     let columns = self.columns(sides, open.clone());
-                    let strips = self.strips(&columns, open.start, across).into_iter();
-                    let led_to =
-                        strips.filter(|strip| sides.iter().any(|&side| self.is_led_to(strip, side, &mouths[side])));
-                    found.extend(led_to.map(|strip| Candidate::new(self.view, sides, &strip, true)));
+                    let strips = self.strips(&columns, open.start, across);
+                    found
+                        .extend(strips.iter().filter(|s| led_to(s)).map(|s| Candidate::new(self.view, sides, s, true)));
                 }
             }
-        }
-        found
+            found
+        };
+        map_each(offsets.len(), threads, above).into_iter().flatten().collect()
     }
 
-    /// True when mouths of a side open into a strip side by side, with structure between them, and none is much wider:
-    /// beside wide aisles, what is narrow is in a row.
+    /// The mouths within some columns that may open into a strip so wide: beside wide aisles, what is narrow is in a row.
+    fn opening<'m>(
+        &self,
+        mouths: &'m [Range<usize>],
+        width: f64,
+        columns: &Range<usize>,
+    ) -> impl Iterator<Item = &'m Range<usize>> {
+        let (cell, columns) = (self.view.cell, columns.clone());
+        let within = move |mouth: &&Range<usize>| columns.start < mouth.end && mouth.start < columns.end;
+        mouths.iter().filter(within).filter(move |mouth| width >= LED_TO * (mouth.len() as f64 * cell))
+    }
+
+    /// True when mouths of a side open into a strip side by side, with structure between them, and none is much wider.
     fn is_led_to(&self, strip: &Strip, side: usize, mouths: &[Range<usize>]) -> bool {
         let (from, to) = self.range(strip);
         let open: Vec<_> = mouths.iter().filter(|mouth| from < mouth.end && mouth.start < to).collect();
-        let widest = open.iter().map(|mouth| mouth.len()).max().unwrap_or(0) as f64 * self.view.cell;
+        let all_may = self.opening(mouths, strip.width(), &(from..to)).count() == open.len();
         let between: Vec<usize> = (from..to).filter(|c| !open.iter().any(|mouth| mouth.contains(c))).collect();
         let held = between.iter().filter(|&&c| self.sides[side].near.get(c)).count();
-        open.len() >= 2 && strip.width() >= LED_TO * widest && held as f64 >= BETWEEN * between.len() as f64
+        open.len() >= LEAST_MOUTHS && all_may && held as f64 >= BETWEEN * between.len() as f64
     }
 
     /// The stretches of a strip that are not closed and are long enough for a corridor.
