@@ -11,8 +11,9 @@ import numpy.typing as npt
 import pytest
 from _bags import KINDS, Sent, grid, text, update, write_bag
 from _program import call, files, hall, write_map
+from _reading import refused, states
 
-from groundplan import Map, MapError, read
+from groundplan import read
 from groundplan.maps import FREE, OCCUPIED, UNKNOWN
 
 Capture = pytest.CaptureFixture[str]
@@ -27,22 +28,7 @@ def made(tmp_path: Path, *sent: Sent, kind: str = "mcap") -> Path:
     return write_bag(tmp_path / ("run.bag" if kind == "bag" else "run"), kind, sent)
 
 
-def states(of: Map) -> npt.NDArray[np.uint8]:
-    return of.states[of.pixels]
-
-
 EXPECTED = np.select([hall() == 0, hall() == 254], [OCCUPIED, FREE], UNKNOWN)
-
-
-def refused(path: Path, code: str, *said: str, **options: object) -> MapError:
-    with pytest.raises(MapError) as caught:
-        read(path, **options)  # type: ignore[arg-type]
-    assert caught.value.code == code, caught.value
-    sentence = f"{caught.value} {caught.value.hint}"
-    assert "\n" not in sentence
-    for word in said:
-        assert word in sentence
-    return caught.value
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -16,9 +16,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from _program import call, files, hall, write_pgm
+from _reading import refused
 from PIL import Image
 
-from groundplan import Map, MapError, read, survey
+from groundplan import Map, read, survey
 from groundplan.maps import _canvas, png
 from groundplan.simulate import warehouse
 
@@ -96,25 +97,17 @@ def test_every_filter_of_a_png_is_taken_off(tmp_path: Path, small_memory: Path) 
     assert np.array_equal(read(path, resolution=0.05).pixels, noisy())
 
 
-def refused(path: Path, code: str, *said: str) -> None:
-    with pytest.raises(MapError) as caught:
-        read(path, resolution=0.05)
-    assert caught.value.code == code
-    for word in said:
-        assert word in f"{caught.value} {caught.value.hint}"
-
-
 def test_a_large_png_that_is_damaged_is_refused(tmp_path: Path, small_memory: Path) -> None:
     path = tmp_path / "map.png"
     Image.fromarray(noisy()).save(path)
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2])
-    refused(path, "map.truncated", "map.png", "of 200 rows")
+    refused(path, "map.truncated", "map.png", "of 200 rows", resolution=0.05)
     path.write_bytes(whole[: len(whole) // 2] + bytes(3) + whole[len(whole) // 2 + 3 :])
-    refused(path, "map.corrupt", "map.png is a damaged PNG")
+    refused(path, "map.corrupt", "map.png is a damaged PNG", resolution=0.05)
     hidden = Image.merge("LA", [Image.fromarray(noisy()), Image.fromarray(noisy())])
     hidden.save(path)
-    refused(path, "map.too-large", "transparent", "8-bit PGM")
+    refused(path, "map.too-large", "transparent", "8-bit PGM", resolution=0.05)
     assert files(small_memory) == set()
 
 

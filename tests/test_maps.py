@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from _reading import refused, states
 from PIL import Image
 
 from groundplan._errors import MapError
@@ -56,10 +57,6 @@ def with_greys(free: int, unknown: int, wall: int) -> Pixels:
     return np.choose(np.searchsorted([0, 205, 254], hall()), [wall, unknown, free]).astype(np.uint8)
 
 
-def states(of: Map) -> Pixels:
-    return of.states[of.pixels]
-
-
 def codes(of: Map) -> list[str]:
     return [warning.code for warning in of.warnings]
 
@@ -74,17 +71,6 @@ def shares(of: Map) -> tuple[float, ...]:
 
 
 EXPECTED = np.choose(np.searchsorted([0, 205, 254], hall()), [OCCUPIED, UNKNOWN, FREE])
-
-
-def refused(path: Path, code: str, *said: str, **options: object) -> MapError:
-    """Reading gives this error, and its one sentence says these words."""
-    with pytest.raises(MapError) as caught:
-        read(path, **options)  # type: ignore[arg-type]
-    assert caught.value.code == code
-    assert "\n" not in str(caught.value)
-    for word in said:
-        assert word in str(caught.value)
-    return caught.value
 
 
 # The three dialects

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 from _program import call
+from _reading import refused, states
 
 from groundplan import Map, MapError, Survey, read
 from groundplan.maps import FREE, OCCUPIED
@@ -48,23 +48,11 @@ def write(
     return path
 
 
-def states(of: Map) -> npt.NDArray[np.uint8]:
-    return of.states[of.pixels]
-
-
 def at(of: Map, x: float, y: float) -> int:
     """State of the pixel at a point."""
     column = int((x - of.origin[0]) // of.resolution)
     row = of.height - 1 - int((y - of.origin[1]) // of.resolution)
     return int(states(of)[row, column])
-
-
-def refused(path: Path, code: str, *said: str, **options: Any) -> None:
-    with pytest.raises(MapError) as caught:
-        read(path, **options)
-    assert caught.value.code == code
-    for word in said:
-        assert word in f"{caught.value} {caught.value.hint}"
 
 
 @pytest.mark.parametrize("kind", FORMATS)

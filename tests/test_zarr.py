@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from _program import call, files, hall
+from _reading import refused, states
 
-from groundplan import Map, MapError, read
+from groundplan import read
 from groundplan.maps import FREE, OCCUPIED, UNKNOWN, _canvas
 
 zarr = pytest.importorskip("zarr")
@@ -26,18 +27,6 @@ def write(path: Path, pixels: npt.NDArray[Any], version: int = 3, chunks: int = 
     array[:] = pixels
     array.attrs.update(attributes)
     return path
-
-
-def states(of: Map) -> npt.NDArray[np.uint8]:
-    return of.states[of.pixels]
-
-
-def refused(path: Path, code: str, *said: str) -> None:
-    with pytest.raises(MapError) as caught:
-        read(path)
-    assert caught.value.code == code
-    for word in said:
-        assert word in f"{caught.value} {caught.value.hint}"
 
 
 @pytest.mark.parametrize("version", [2, 3])
