@@ -6,6 +6,7 @@ use super::corridors::{self, Strip};
 use super::gates;
 use super::joined;
 use super::junctions::{self, Meeting};
+use super::legs;
 use super::look::Look;
 use super::racks::{self, Row};
 use super::rooms::{Bar, Space};
@@ -33,6 +34,8 @@ const FACING: f64 = 0.5;
 /// What the map shows without its faces.
 pub struct Sketch {
     pub views: Vec<Turned>,
+    /// Racks that stand on legs.
+    pub on_legs: Vec<Row>,
     pub plan: Plan,
     pub free: Free,
 }
@@ -41,6 +44,7 @@ pub struct Sketch {
 pub struct Sight<'a, F> {
     look: Look<'a>,
     views: Vec<Turned>,
+    on_legs: Vec<Row>,
     free: F,
 }
 
@@ -53,8 +57,9 @@ impl<'s, 'a> Sight<'a, Later<'s, Free>> {
         let free = side.start(move || space.get().map(|space| with_bars(evidence, space)));
         let look = look.get();
         let count = evidence.directions.angles.len();
-        let views = map_each(count, evidence.threads, |d| Turned::new(&shared_out(evidence), &look, d));
-        Self { look, views, free }
+        let on_legs = legs::find(evidence);
+        let views = map_each(count, evidence.threads, |d| Turned::new(&shared_out(evidence), &look, d, &on_legs));
+        Self { look, views, on_legs, free }
     }
 }
 
@@ -63,7 +68,9 @@ impl<'a> Sight<'a, Free> {
     pub fn lined(evidence: &Evidence, Ground { look, space }: Ground<'_, 'a>) -> Self {
         let free = space.get().map(|space| with_bars(evidence, space));
         let count = evidence.directions.angles.len();
-        Self { look: look.get(), views: map_each(count, evidence.threads, |d| Turned::lined(evidence, d)), free }
+        let on_legs = legs::find(evidence);
+        let views = map_each(count, evidence.threads, |d| Turned::lined(evidence, d, &on_legs));
+        Self { look: look.get(), views, on_legs, free }
     }
 
     /// And what lies between the lines, for which of the gradients the specks are enough.
@@ -88,16 +95,16 @@ fn shared_out<'a>(evidence: &Evidence<'a>) -> Evidence<'a> {
 impl Sketch {
     /// Beside what is still being made of it.
     pub fn beside(evidence: &Evidence, sight: Sight<Later<Free>>) -> Self {
-        let Sight { look, views, free } = sight;
+        let Sight { look, views, on_legs, free } = sight;
         let plan = Plan::of(evidence, &look, &views);
-        Self { views, plan, free: free.get() }
+        Self { views, on_legs, plan, free: free.get() }
     }
 
     /// From what is seen.
     pub fn new(evidence: &Evidence, sight: Sight<Free>) -> Self {
-        let Sight { look, views, free } = sight;
+        let Sight { look, views, on_legs, free } = sight;
         let plan = Plan::of(evidence, &look, &views);
-        Self { views, plan, free }
+        Self { views, on_legs, plan, free }
     }
 }
 

@@ -23,10 +23,10 @@ const RIM: f64 = 0.4;
 
 /// The labels that a sketch shows, with the faces that lie in them.
 pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Label> {
-    let Sketch { mut views, plan, free } = sketch;
+    let Sketch { mut views, on_legs, plan, free } = sketch;
     let Plan { strips, meetings, ends, extents, rows } = plan;
     let between = rows;
-    let rows = whole::find(&views, &strips, &extents, &between);
+    let rows = whole::find(&views, &strips, &extents, &between, &on_legs);
 
     // A face is of one junction at most, and of one corridor.
     let mut faces = Faces::new(division, |state| state == State::Free);

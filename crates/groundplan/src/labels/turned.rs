@@ -4,6 +4,7 @@
 use super::Evidence;
 use super::look::{LANES, Look};
 use super::on_line::OnLine;
+use super::racks::Row;
 use super::recall::Key;
 use super::summed::Part;
 use super::sums::{Cells, Rows, Told, What};
@@ -21,6 +22,9 @@ const NEAR: (f64, f64) = (0.12, 2.0);
 /// Lines with less structure than this, metres, and than this share of a strong line's, are no sides of corridors but
 /// the faces of single goods.
 const STRONG: (f64, f64) = (2.0, 0.08);
+
+/// The sides of what stands across the direction, or nearly, are so much off it at most.
+const ASKEW: f64 = 0.02;
 
 /// Nothing gets through where more than this share is not free, or more than this is barred by a wall, be it thin.
 pub const IMPASSABLE: f64 = 0.7;
@@ -54,20 +58,22 @@ pub struct Turned {
     pub touched: Vec<Bits>,
     /// What is told of each row of cells.
     pub rows: Vec<Told>,
+    /// Corners of racks that stand on legs, whose ground is taken.
+    on_legs: Vec<Vec<[f64; 2]>>,
     /// Keys of the view without its rows and lines, and of its lines.
     keys: (Key, Vec<Key>),
 }
 
 impl Turned {
     /// The map seen along one direction.
-    pub fn new(evidence: &Evidence, look: &Look, direction: usize) -> Self {
-        let mut made = Self::lined(evidence, direction);
+    pub fn new(evidence: &Evidence, look: &Look, direction: usize, on_legs: &[Row]) -> Self {
+        let mut made = Self::lined(evidence, direction, on_legs);
         made.see(evidence, look);
         made
     }
 
     /// What lies on a direction's lines, and nothing between them yet.
-    pub fn lined(evidence: &Evidence, direction: usize) -> Self {
+    pub fn lined(evidence: &Evidence, direction: usize, on_legs: &[Row]) -> Self {
         let frame = &evidence.grid.frame;
         let angle = evidence.directions.angles[direction];
         let (cos, sin) = (libm::cos(angle), libm::sin(angle));
@@ -95,8 +101,10 @@ impl Turned {
             covered: Vec::new(),
             touched: Vec::new(),
             rows: Vec::new(),
+            on_legs: Vec::new(),
             keys: (Key::default(), Vec::new()),
         };
+        made.stand(evidence, on_legs);
         made.cover_lines(evidence);
         made
     }
@@ -131,6 +139,7 @@ impl Turned {
         Cells::new(self.size, self.samples.pow(2) as u16, seen, keyed, evidence.threads, |n, first, row| {
             let lanes: [[f64; 2]; LANES] = std::array::from_fn(|j| place((n * samples + j) as f64 + 0.5));
             look.cells(&lanes[..samples], steps[0], first, row);
+            self.take(n, first, row);
         })
     }
 
@@ -152,6 +161,29 @@ impl Turned {
         Part { columns: part(0), rows: part(1) }
     }
 
+    /// Takes the ground of racks that stand on legs, which is of no state of its own in the map.
+    fn stand(&mut self, evidence: &Evidence, racks: &[Row]) {
+        let corners = |rack: &Row| {
+            let angle = evidence.directions.angles[rack.direction];
+            let [cos, sin] = [libm::cos(angle), libm::sin(angle)];
+            let to_map = |[u, v]: [f64; 2]| [u * cos - v * sin, u * sin + v * cos];
+            rectangle(rack.along, rack.across).map(|corner| self.place(to_map(corner))).to_vec()
+        };
+        self.on_legs = racks.iter().map(corners).collect();
+    }
+
+    /// In a row of cells, from some column on, those whose middles lie in a rack that stands on legs.
+    fn take(&self, n: usize, first: usize, row: &mut [u8]) {
+        let v = self.start[1] + (n as f64 + 0.5) * self.cell;
+        for corners in &self.on_legs {
+            let Some([from, to]) = crossed(corners, v) else { continue };
+            let column = |u: f64| ((u - self.start[0]) / self.cell + 0.5).max(0.0) as usize;
+            let within = column(from).max(first)..column(to).min(first + row.len());
+            let taken = self.samples.pow(2) as u8;
+            within.for_each(|column| row[column - first] = row[column - first] & 0xf0 | taken);
+        }
+    }
+
     fn cover_lines(&mut self, evidence: &Evidence) {
         let frame = &evidence.grid.frame;
         let lines = evidence.lines;
@@ -161,9 +193,18 @@ impl Turned {
             .map(|n| lines.offsets[n])
             .collect();
         self.offsets.sort_by(f64::total_cmp);
+        let near = NEAR.0.max(NEAR.1 * frame.resolution);
+        let sides = self.sides_on_legs();
+        for &(offset, _) in &sides {
+            let at = self.offsets.partition_point(|&other| other < offset);
+            let others = &self.offsets[at.saturating_sub(1)..self.offsets.len().min(at + 1)];
+            if others.iter().all(|other| (other - offset).abs() > near) {
+                self.offsets.insert(at, offset);
+            }
+        }
         let mut covered = vec![Bits::new(self.size[0]); self.offsets.len()];
         let mut touched = covered.clone();
-        let lines = OnLine::new(&self.offsets, NEAR.0.max(NEAR.1 * frame.resolution));
+        let lines = OnLine::new(&self.offsets, near);
         let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
         let on_grid = frame.angle_to_grid(self.angle);
         evidence.gradients.iter().for_each(|(pixel, along, magnitude)| {
@@ -181,7 +222,22 @@ impl Turned {
                 }
             }
         });
+        for (offset, along) in sides {
+            for line in lines.at(offset) {
+                for bits in [&mut covered[line], &mut touched[line]] {
+                    bits.fill(self.column(along[0])..self.column(along[1]) + 1);
+                }
+            }
+        }
         (self.covered, self.touched) = (covered, touched);
+    }
+
+    /// The sides of racks on legs that lie along the direction: where they are across, and from where to where along.
+    fn sides_on_legs(&self) -> Vec<(f64, [f64; 2])> {
+        let sides =
+            self.on_legs.iter().flat_map(|corners| (0..corners.len()).map(|n| [corners[n], corners[(n + 1) % 4]]));
+        let along = sides.filter(|[a, b]| (a[1] - b[1]).abs() <= ASKEW * (a[0] - b[0]).abs());
+        along.map(|[a, b]| (f64::midpoint(a[1], b[1]), [a[0].min(b[0]), a[0].max(b[0])])).collect()
     }
 
     /// Keys of the view and of its lines.
@@ -235,7 +291,7 @@ impl Turned {
 
     /// A rectangle of places, counter-clockwise, as a polygon in the map frame.
     pub fn rectangle(&self, along: [f64; 2], across: [f64; 2]) -> Vec<[f64; 2]> {
-        [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[u, v]| self.to_map([along[u], across[v]])).to_vec()
+        rectangle(along, across).map(|corner| self.to_map(corner)).to_vec()
     }
 
     /// The column that holds place `u`, the first or last when it lies outside.
@@ -436,4 +492,18 @@ impl Shares<'_> {
 
 fn is_closed(blocked: f64, barred: f64) -> bool {
     blocked > IMPASSABLE || barred > BARRED
+}
+
+/// The corners of a rectangle of places, counter-clockwise.
+fn rectangle(along: [f64; 2], across: [f64; 2]) -> [[f64; 2]; 4] {
+    [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[u, v]| [along[u], across[v]])
+}
+
+/// From where to where a convex polygon holds a line along at a place across.
+fn crossed(corners: &[[f64; 2]], v: f64) -> Option<[f64; 2]> {
+    let sides = (0..corners.len()).map(|n| [corners[n], corners[(n + 1) % corners.len()]]);
+    let met = sides.filter(|[a, b]| (a[1] <= v) != (b[1] <= v));
+    let places = met.map(|[a, b]| a[0] + (b[0] - a[0]) * (v - a[1]) / (b[1] - a[1]));
+    let ends = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], u| [low.min(u), high.max(u)]);
+    (ends[0] < ends[1]).then_some(ends)
 }

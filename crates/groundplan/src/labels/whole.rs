@@ -29,8 +29,8 @@ const INSET: f64 = 0.3;
 const UNKNOWN: f64 = 0.965;
 const HIDDEN: f64 = 0.4;
 
-/// The racks of a place.
-pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], rows: &[Row]) -> Vec<Row> {
+/// The racks of a place, of which those that stand on legs are known.
+pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], rows: &[Row], on_legs: &[Row]) -> Vec<Row> {
     let mut known = without_walls(views, rows);
     if racks::are_here(&known, extents) {
         let at_walls = at_walls::find(views, strips, extents, &known);
@@ -46,6 +46,10 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], rows: &[Ro
     };
     let found: Vec<Row> = known.iter().filter_map(whole).collect();
     let mut blocks = blocks::find(views, &found);
+    let met = blocks::overlapping(views, &blocks, on_legs);
+    let mut met = met.into_iter();
+    blocks.retain(|_| met.next().is_some_and(|racks| racks.is_empty()));
+    blocks.extend_from_slice(on_legs);
     let met = blocks::overlapping(views, &blocks, rows);
     for (block, met) in blocks.iter_mut().zip(met) {
         block.between = met.into_iter().find_map(|n| rows[n].between);

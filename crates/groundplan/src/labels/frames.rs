@@ -1,0 +1,115 @@
+//! Frames: two legs of a rack that stand across from each other, or the plate that joins them.
+
+use super::uprights::Upright;
+use std::collections::BTreeMap;
+
+/// A leg is no wider than this, metres.
+const LEG: f64 = 0.3;
+/// From leg to leg across a frame, metres.
+const DEPTH: [f64; 2] = [0.4, 1.6];
+/// Legs of a frame are nearer to each other than so much of the aisle beyond them, which is looked for so far, metres.
+const NEARER: f64 = 0.8;
+pub const AISLE: f64 = 6.0;
+/// Frames back to back are no further apart, metres.
+pub const BACK: f64 = 0.45;
+/// Legs stand so near to where they would without the map's error, metres.
+pub const NEAR: f64 = 0.15;
+
+/// Two legs across from each other.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    /// Along.
+    pub at: f64,
+    /// Across.
+    pub faces: [f64; 2],
+}
+
+impl Frame {
+    pub fn depth(&self) -> f64 {
+        self.faces[1] - self.faces[0]
+    }
+
+    /// True when it stands between two faces, but for the map's error.
+    pub fn is_in_line(&self, faces: [f64; 2]) -> bool {
+        self.faces.into_iter().zip(faces).all(|(own, other)| (own - other).abs() <= NEAR)
+    }
+}
+
+/// The frames that uprights make across a heading, by their places along it.
+pub fn frames(uprights: &[Upright], [cos, sin]: [f64; 2]) -> Vec<Frame> {
+    let mut frames = Vec::new();
+    let mut all = Vec::new();
+    for upright in uprights {
+        let [x, y] = upright.at;
+        let (u, v) = (x * cos + y * sin, y * cos - x * sin);
+        let [along, across] = upright.extents([cos, sin]);
+        if along <= LEG && across <= LEG {
+            all.push([u, v]);
+        } else if along <= LEG && (DEPTH[0]..=DEPTH[1]).contains(&across) {
+            frames.push(Frame { at: u, faces: [v - across / 2.0, v + across / 2.0] });
+        }
+    }
+    let legs = Legs::new(&all);
+    frames.extend(all.iter().filter_map(|&leg| legs.frame(leg)));
+    frames.sort_by(|a, b| a.at.total_cmp(&b.at));
+    frames
+}
+
+/// Legs by columns as wide as they may be off, of each the places across, ascending, and along.
+struct Legs(BTreeMap<i64, Vec<[f64; 2]>>);
+
+impl Legs {
+    fn new(legs: &[[f64; 2]]) -> Self {
+        let mut columns: BTreeMap<i64, Vec<[f64; 2]>> = BTreeMap::new();
+        for &[u, v] in legs {
+            columns.entry(Self::column(u)).or_default().push([v, u]);
+        }
+        for column in columns.values_mut() {
+            column.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        }
+        Self(columns)
+    }
+
+    fn column(u: f64) -> i64 {
+        (u / NEAR).floor() as i64
+    }
+
+    /// The nearest in line with a leg on one side of it, no further off than an aisle is wide.
+    fn next(&self, [u, v]: [f64; 2], side: f64) -> Option<[f64; 2]> {
+        let own = Self::column(u);
+        let near = self.0.range(own - 1..=own + 1).filter_map(|(_, column)| {
+            let is_next = |leg: &&[f64; 2]| (leg[1] - u).abs() <= NEAR && (leg[0] - v) * side > LEG / 2.0;
+            let first = column.partition_point(|leg| leg[0] <= v);
+            if side > 0.0 {
+                column[first..].iter().take_while(|leg| leg[0] <= v + AISLE).find(is_next)
+            } else {
+                column[..first].iter().rev().take_while(|leg| leg[0] >= v - AISLE).find(is_next)
+            }
+        });
+        near.min_by(|a, b| (a[0] - v).abs().total_cmp(&(b[0] - v).abs())).map(|leg| [leg[1], leg[0]])
+    }
+
+    /// The frame that a leg makes with the next one.
+    fn frame(&self, leg: [f64; 2]) -> Option<Frame> {
+        let other = self.next(leg, 1.0)?;
+        let depth = other[1] - leg[1];
+        if !(DEPTH[0]..=DEPTH[1]).contains(&depth) {
+            return None;
+        }
+        let is_frame = self.is_open(leg, -1.0, depth) && self.is_open(other, 1.0, depth);
+        is_frame.then(|| Frame { at: f64::midpoint(leg[0], other[0]), faces: [leg[1], other[1]] })
+    }
+
+    /// True when an aisle or nothing lies beyond a leg of a frame as deep, be it beyond another frame back to back, which
+    /// may share the leg.
+    fn is_open(&self, leg: [f64; 2], side: f64, depth: f64) -> bool {
+        let gap = |leg: [f64; 2]| self.next(leg, side).map(|far| ((far[1] - leg[1]).abs(), far));
+        let is_frame = |gap: f64| (gap - depth).abs() <= NEAR;
+        let ends = |leg: [f64; 2]| gap(leg).is_none_or(|(gap, _)| depth <= NEARER * gap);
+        match gap(leg) {
+            Some((one, far)) if is_frame(one) => ends(far),
+            Some((one, far)) if one <= BACK => gap(far).is_some_and(|(two, far)| is_frame(two) && ends(far)),
+            _ => ends(leg),
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! Racks of which a lidar sees the legs alone: under the lowest beams there is floor, and the legs stand in pairs of rows at
+//! one pitch. Two legs that stand across from each other make a frame, as does a plate that joins them; frames that
+//! follow one another at one pitch with the same two faces are a rack, where there is another of the kind.
+
+use super::Evidence;
+use super::frames::{AISLE, BACK, Frame, NEAR, frames};
+use super::racks::Row;
+use super::uprights;
+use crate::grid::State;
+use std::collections::BTreeMap;
+
+/// From frame to frame, metres, and in depths at least.
+const PITCH: [f64; 2] = [0.9, 4.5];
+const OBLONG: f64 = 0.7;
+/// So many frames make what may be a rack, and so many of a kind are racks: one may be a long table.
+const FRAMES: usize = 3;
+const KIND: usize = 2;
+/// Pitches of a kind differ by no more than this share.
+const ALIKE: f64 = 0.08;
+/// Two racks are one where they share so much of their length.
+const SHARED: f64 = 0.8;
+/// Floor shows before a face from so far to so far off, metres, over so much of its length.
+const FRONT: [f64; 2] = [0.25, 0.65];
+const FLOOR: f64 = 0.8;
+const STEP: f64 = 0.1;
+/// A rack that leans on something shows so many of its frames, and where the others would be something stands across so
+/// much of its depth.
+const LEANING: usize = 2;
+const LOST: f64 = 0.5;
+
+/// Frames in a row.
+#[derive(Clone, Debug)]
+struct Rack {
+    row: Row,
+    pitch: f64,
+    frames: usize,
+}
+
+/// The racks, along each direction.
+pub fn find(evidence: &Evidence) -> Vec<Row> {
+    let uprights = uprights::find(evidence);
+    let mut racks: Vec<Rack> = Vec::new();
+    for (direction, &angle) in evidence.directions.angles.iter().enumerate() {
+        let heading = [libm::cos(angle), libm::sin(angle)];
+        let frames = frames(&uprights, heading);
+        let map = Map { evidence, heading };
+        let mut found: Vec<Rack> = in_rows(&frames).into_iter().map(|row| rack(direction, &row)).collect();
+        found.retain(|rack| map.shows_floor(&rack.row));
+        let found = back_to_back(found);
+        let mut found: Vec<Rack> = found.iter().filter(|rack| is_kind(rack, &found)).cloned().collect();
+        let leaning: Vec<Rack> = frames.iter().filter_map(|frame| leaning(&map, &found, &frames, frame)).collect();
+        found.extend(leaning);
+        racks.extend(back_to_back(found));
+    }
+    // Legs of more than one direction's racks are of that which has most of them in a row.
+    racks.sort_by_key(|rack| std::cmp::Reverse(rack.frames));
+    let mut kept: Vec<Row> = Vec::new();
+    for Rack { row, .. } in racks {
+        let others = kept.iter().filter(|other| other.direction != row.direction);
+        if !others.into_iter().any(|other| holds_middle(evidence, other, &row) || holds_middle(evidence, &row, other)) {
+            kept.push(row);
+        }
+    }
+    kept
+}
+
+/// True when a row holds the middle of another.
+fn holds_middle(evidence: &Evidence, row: &Row, other: &Row) -> bool {
+    let [own, its] = [row, other].map(|row| evidence.directions.angles[row.direction]);
+    let (sin, cos) = (libm::sin(its - own), libm::cos(its - own));
+    let [u, v] = [other.along, other.across].map(|ends| f64::midpoint(ends[0], ends[1]));
+    (row.along[0]..=row.along[1]).contains(&(u * cos - v * sin))
+        && (row.across[0]..=row.across[1]).contains(&(u * sin + v * cos))
+}
+
+/// Frames that follow one another at one pitch.
+fn in_rows(frames: &[Frame]) -> Vec<Vec<Frame>> {
+    // By strips as wide as legs may be off.
+    let strip = |frame: &Frame| (frame.faces[0] / NEAR).floor() as i64;
+    let mut strips: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
+    (0..frames.len()).for_each(|n| strips.entry(strip(&frames[n])).or_default().push(n));
+    let next = |n: usize| {
+        let own = &frames[n];
+        let near = (strip(own) - 1..=strip(own) + 1).filter_map(|s| strips.get(&s)).filter_map(|strip| {
+            let first = strip.partition_point(|&m| m <= n);
+            let is_like = |m: &&usize| own.is_in_line(frames[**m].faces);
+            strip[first..].iter().take_while(|m| frames[**m].at <= own.at + 2.0 * PITCH[1]).find(is_like)
+        });
+        near.min().copied()
+    };
+    let nexts: Vec<Option<usize>> = (0..frames.len()).map(next).collect();
+    let mut taken = vec![false; frames.len()];
+    let mut rows = Vec::new();
+    for first in 0..frames.len() {
+        if taken[first] {
+            continue;
+        }
+        let mut row = vec![first];
+        while let Some(other) = nexts[row[row.len() - 1]].filter(|&other| !taken[other]) {
+            taken[other] = true;
+            row.push(other);
+        }
+        rows.extend(at_one_pitch(&row.iter().map(|&n| frames[n]).collect::<Vec<_>>()));
+    }
+    rows
+}
+
+/// The pieces of a row of frames whose gaps are alike.
+fn at_one_pitch(row: &[Frame]) -> Vec<Vec<Frame>> {
+    let gap = |pair: &[Frame]| pair[1].at - pair[0].at;
+    let mut gaps: Vec<f64> = row.windows(2).map(gap).collect();
+    gaps.sort_by(f64::total_cmp);
+    let Some(&pitch) = gaps.get(gaps.len() / 2) else { return Vec::new() };
+    if !(PITCH[0].max(OBLONG * row[0].depth())..=PITCH[1]).contains(&pitch) {
+        return Vec::new();
+    }
+    let pieces = row.chunk_by(|a, b| (b.at - a.at - pitch).abs() <= NEAR);
+    pieces.filter(|piece| piece.len() >= FRAMES).map(<[Frame]>::to_vec).collect()
+}
+
+fn rack(direction: usize, row: &[Frame]) -> Rack {
+    let (first, last) = (row[0], row[row.len() - 1]);
+    let mean = |face: usize| row.iter().map(|frame| frame.faces[face]).sum::<f64>() / row.len() as f64;
+    let row_of = Row { direction, along: [first.at, last.at], across: [mean(0), mean(1)], between: None };
+    Rack { row: row_of, pitch: (last.at - first.at) / (row.len() - 1) as f64, frames: row.len() }
+}
+
+/// The rack that a frame is of which stands beside another one and has frames at its places, but for some that are lost
+/// in what it leans on; `racks` and `frames` are in the order of their places across, and along.
+fn leaning(map: &Map, racks: &[Rack], frames: &[Frame], frame: &Frame) -> Option<Rack> {
+    let first = racks.partition_point(|rack| rack.row.across[0] < frame.faces[0] - AISLE);
+    let near = || racks[first..].iter().take_while(|rack| rack.row.across[0] <= frame.faces[1] + AISLE);
+    let is_at = |rack: &Rack| (rack.row.along[0] - NEAR..=rack.row.along[1] + NEAR).contains(&frame.at);
+    let overlaps = |rack: &Rack| rack.row.across[0] < frame.faces[1] && frame.faces[0] < rack.row.across[1];
+    if near().any(|rack| is_at(rack) && overlaps(rack)) {
+        return None;
+    }
+    let is_like = |rack: &&Rack| is_at(rack) && (rack.row.depth() - frame.depth()).abs() <= NEAR;
+    near().filter(is_like).find_map(|rack| {
+        let place = |n: usize| rack.row.along[0] + n as f64 * rack.pitch;
+        let at = |place: f64| {
+            let first = frames.partition_point(|other| other.at < place - NEAR);
+            let near = frames[first..].iter().take_while(|other| other.at <= place + NEAR);
+            near.filter(|other| frame.is_in_line(other.faces)).count()
+        };
+        let (own, lost): (Vec<f64>, Vec<f64>) = (0..rack.frames).map(place).partition(|&place| at(place) > 0);
+        let is_one = own.len() >= LEANING && lost.into_iter().all(|place| map.stands(place, frame.faces));
+        let row = Row { across: frame.faces, ..rack.row.clone() };
+        (is_one && map.shows_floor(&row)).then(|| Rack { row, ..rack.clone() })
+    })
+}
+
+/// The map, asked place by place.
+struct Map<'a> {
+    evidence: &'a Evidence<'a>,
+    heading: [f64; 2],
+}
+
+impl Map<'_> {
+    fn state(&self, [u, v]: [f64; 2]) -> State {
+        let (grid, [cos, sin]) = (self.evidence.grid, self.heading);
+        let [x, y] = grid.frame.to_pixels([u * cos - v * sin, u * sin + v * cos]);
+        let is_inside = (0.0..grid.frame.width as f64).contains(&x) && (0.0..grid.frame.height as f64).contains(&y);
+        if is_inside { grid.table.states[usize::from(grid.row(y as usize)[x as usize])] } else { State::Unknown }
+    }
+
+    /// True when something stands across so much of a row's depth at a place along it.
+    fn stands(&self, at: f64, faces: [f64; 2]) -> bool {
+        let is_taken = |v: &f64| steps([at - NEAR, at + NEAR]).any(|u| self.state([u, *v]) == State::Occupied);
+        let taken = steps(faces).filter(is_taken).count();
+        taken as f64 >= LOST * steps(faces).count() as f64
+    }
+
+    /// True when floor shows before one of a rack's faces.
+    fn shows_floor(&self, row: &Row) -> bool {
+        [(row.across[0], -1.0), (row.across[1], 1.0)].into_iter().any(|(face, side)| {
+            let places = || steps(row.along).flat_map(|u| steps(FRONT).map(move |off| [u, face + side * off]));
+            let free = places().filter(|&place| self.state(place) == State::Free).count();
+            free as f64 >= FLOOR * places().count() as f64
+        })
+    }
+}
+
+/// Places from one to another.
+fn steps([from, to]: [f64; 2]) -> impl Iterator<Item = f64> + Clone {
+    let count = ((to - from) / STEP).ceil().max(1.0) as usize;
+    (0..=count).map(move |n| from + (to - from) * n as f64 / count as f64)
+}
+
+/// Racks, and in place of two back to back the one that they are.
+fn back_to_back(mut racks: Vec<Rack>) -> Vec<Rack> {
+    racks.sort_by(|a, b| a.row.across[0].total_cmp(&b.row.across[0]));
+    let mut whole: Vec<Rack> = Vec::new();
+    for rack in racks {
+        let row = &rack.row;
+        let is_back = |other: &&mut Rack| {
+            let other = &other.row;
+            let shared = row.along[1].min(other.along[1]) - row.along[0].max(other.along[0]);
+            row.across[0] - other.across[1] <= BACK && shared >= SHARED * row.length().max(other.length())
+        };
+        let near = whole.iter_mut().rev().take_while(|other| row.across[0] - other.row.across[0] <= AISLE);
+        if let Some(Rack { row: other, .. }) = near.into_iter().find(is_back) {
+            other.along = [other.along[0].min(row.along[0]), other.along[1].max(row.along[1])];
+            other.across[1] = other.across[1].max(row.across[1]);
+        } else {
+            whole.push(rack);
+        }
+    }
+    whole
+}
+
+/// True when there are enough of a rack's kind.
+fn is_kind(rack: &Rack, all: &[Rack]) -> bool {
+    let depth = rack.row.depth();
+    let alike = |other: &&Rack| {
+        (other.row.depth() - depth).abs() <= NEAR && (other.pitch - rack.pitch).abs() <= ALIKE * rack.pitch
+    };
+    all.iter().filter(alike).take(KIND).count() == KIND
+}

@@ -1,0 +1,134 @@
+"""Racks of which a lidar sees the legs alone: legs in pairs, at one pitch, with floor under the lowest beams."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import groundplan
+
+Picture = npt.NDArray[np.uint8]
+Box = tuple[float, float, float, float]
+
+RESOLUTION = 0.05
+
+
+def hall(width: float, height: float, boxes: Iterator[Box], degrees: float = 0.0) -> Picture:
+    """A walled hall, metres, with boxes from corner to corner, turned about its middle."""
+    side = int(np.hypot(width, height) / RESOLUTION) + 40
+    y, x = (np.mgrid[:side, :side] + 0.5 - side / 2) * RESOLUTION
+    cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    u, v = x * cos + y * sin + width / 2, y * cos - x * sin + height / 2
+    picture = np.full((side, side), 205, np.uint8)
+
+    def fill(box: Box, value: int) -> None:
+        picture[(u >= box[0]) & (u < box[2]) & (v >= box[1]) & (v < box[3])] = value
+
+    fill((-0.15, -0.15, width + 0.15, height + 0.15), 0)
+    fill((0.0, 0.0, width, height), 254)
+    for box in boxes:
+        fill(box, 0)
+    return picture[::-1]
+
+
+def legs(x: float, y: float, bays: int, depth: float, pitch: float, leg: float = 0.1) -> Iterator[Box]:
+    """Legs of a rack along x, its lower corner at a place."""
+    for n in range(bays + 1):
+        for low in (y, y + depth - leg):
+            yield x + n * pitch, low, x + n * pitch + leg, low + leg
+
+
+def plates(x: float, y: float, bays: int, depth: float, pitch: float) -> Iterator[Box]:
+    """The same where a plate joins the two legs of each frame."""
+    for n in range(bays + 1):
+        yield x + n * pitch, y, x + n * pitch + 0.1, y + depth
+
+
+def counts(picture: Picture) -> dict[str, int]:
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    return {kind: len(survey.of_kind(kind)) for kind in ("rack", "corridor", "junction", "pillar")}
+
+
+NOTHING = {"rack": 0, "corridor": 0, "junction": 0, "pillar": 0}
+
+
+@pytest.mark.parametrize("degrees", [0.0, 17.0])
+@pytest.mark.parametrize(("depth", "pitch", "aisle"), [(1.1, 2.7, 3.0), (1.3, 3.6, 2.0), (0.6, 1.5, 1.5)])
+def test_legs_in_pairs_at_one_pitch_are_racks_with_aisles_between_them(
+    depth: float, pitch: float, aisle: float, degrees: float
+) -> None:
+    boxes = (box for n in range(4) for box in legs(4.0, aisle + n * (aisle + depth), 7, depth, pitch))
+    picture = hall(8.0 + 7 * pitch, 5 * aisle + 4 * depth, boxes, degrees)
+    # Five aisles along the racks and a way past each of their ends.
+    assert counts(picture) == {"rack": 4, "corridor": 7, "junction": 10, "pillar": 0}
+    for rack in groundplan.survey(picture, resolution=RESOLUTION).of_kind("rack"):
+        assert rack["width"] == pytest.approx(depth, abs=0.15)
+        assert np.hypot(*np.subtract(*rack["axis"])) == pytest.approx(7 * pitch, abs=0.3)
+
+
+def test_goods_on_some_of_the_floor_under_the_racks_change_nothing() -> None:
+    def boxes() -> Iterator[Box]:
+        for n in range(4):
+            yield from legs(4.0, 3.0 + 4.1 * n, 8, 1.1, 2.7)
+            for bay in (n, n + 3):
+                yield 4.3 + 2.7 * bay, 3.1 + 4.1 * n, 5.9 + 2.7 * bay, 4.0 + 4.1 * n
+
+    assert counts(hall(29.6, 19.4, boxes())) == {"rack": 4, "corridor": 7, "junction": 10, "pillar": 0}
+
+
+def test_racks_back_to_back_are_one() -> None:
+    def boxes() -> Iterator[Box]:
+        for n in range(3):
+            yield from legs(4.0, 3.0 + 5.4 * n, 8, 1.1, 2.7)
+            yield from legs(4.0, 4.3 + 5.4 * n, 8, 1.1, 2.7)
+
+    survey = groundplan.survey(hall(29.6, 19.2, boxes()), resolution=RESOLUTION)
+    assert [rack["width"] for rack in survey.of_kind("rack")] == pytest.approx([2.4] * 3, abs=0.15)
+    assert len(survey.of_kind("corridor")) == 6
+
+
+def test_a_way_across_racks_on_legs_is_none_of_their_bays() -> None:
+    def boxes() -> Iterator[Box]:
+        for n in range(4):
+            for x in (4.0, 4.0 + 5 * 2.7 + 3.5):
+                yield from legs(x, 3.0 + 4.1 * n, 5, 1.1, 2.7)
+
+    assert counts(hall(38.5, 19.4, boxes(), 5.0)) == {"rack": 8, "corridor": 8, "junction": 15, "pillar": 0}
+
+
+def test_plates_that_follow_one_another_are_the_frames_of_racks() -> None:
+    """Six racks of two bays, with aisles hardly wider than they are deep."""
+    boxes = (box for n in range(6) for box in plates(3.0, 1.0 + 1.9 * n, 2, 0.9, 2.0))
+    picture = hall(10.0, 12.4, boxes, 3.0)
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    assert len(survey.of_kind("rack")) == 6 and len(survey.of_kind("corridor")) == 9
+
+
+def test_a_rack_whose_last_frame_is_lost_in_a_wall_is_as_long_as_those_beside_it() -> None:
+    def boxes() -> Iterator[Box]:
+        for n in range(5):
+            yield from plates(3.0, 2.0 + 1.9 * n, 2, 0.9, 2.0)
+        # Before the wall behind the third of them stands something.
+        yield 7.0, 5.7, 7.9, 6.8
+
+    survey = groundplan.survey(hall(7.9, 11.8, boxes()), resolution=RESOLUTION)
+    lengths = [np.hypot(*np.subtract(*rack["axis"])) for rack in survey.of_kind("rack")]
+    assert lengths == pytest.approx([4.0] * 5, abs=0.3)
+
+
+def test_a_table_is_no_rack_be_it_long() -> None:
+    assert counts(hall(20.0, 12.0, legs(5.0, 5.0, 6, 1.0, 1.5))) == NOTHING
+
+
+def test_legs_anyhow_are_no_racks() -> None:
+    draws = np.random.default_rng(3)
+    places = draws.uniform((1.0, 1.0), (23.0, 17.0), (120, 2))
+    assert counts(hall(24.0, 18.0, ((x, y, x + 0.1, y + 0.1) for x, y in places)))["rack"] == 0
+
+
+def test_a_grid_of_thin_posts_as_far_apart_along_as_across_is_no_rack() -> None:
+    boxes = ((x, y, x + 0.1, y + 0.1) for x in np.arange(3.0, 20.0, 1.5) for y in np.arange(3.0, 20.0, 1.5))
+    assert counts(hall(23.0, 23.0, boxes))["rack"] == 0
