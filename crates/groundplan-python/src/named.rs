@@ -56,7 +56,10 @@ pub fn pairs<T: Element + Copy>(dict: &Bound<'_, PyDict>, name: &str) -> PyResul
     if array.ncols() != 2 {
         return Err(PyValueError::new_err(format!("{name} has {} columns and not 2", array.ncols())));
     }
-    Ok(array.rows().into_iter().map(|row| [row[0], row[1]]).collect())
+    Ok(match array.as_slice() {
+        Some(flat) => flat.chunks_exact(2).map(|row| [row[0], row[1]]).collect(),
+        None => array.rows().into_iter().map(|row| [row[0], row[1]]).collect(),
+    })
 }
 
 /// Arrays from outside must fit one another: the method trusts what its own stages made.

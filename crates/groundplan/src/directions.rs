@@ -4,7 +4,7 @@ use crate::gradients::Gradients;
 use crate::grid::{Frame, angle_between, tidy, tidy_angle, undirected};
 use crate::oriented::{BINS, Oriented};
 use crate::parameters::Parameters;
-use crate::projection::{Across, FRACTIONS};
+use crate::projection::{Across, Sum};
 use crate::radiograms::{UNIT, metres_per_unit};
 use crate::sharpness::{SCAN_DEG, sharpest};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -137,9 +137,6 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
     let separation = parameters.directions_separation_deg.to_radians();
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
     let diagonal = libm::hypot(frame.width as f64, frame.height as f64);
-    // What is less than this share of the strongest is of no use, unless so many directions were asked for.
-    let least =
-        if parameters.directions_count.is_some() { 0.0 } else { parameters.directions_min_weight.min(SQUARE.1) };
     let mut strongest: f64 = 0.0;
     let mut found: Vec<Candidate> = Vec::new();
     let mut tried: Vec<f64> = Vec::new();
@@ -150,14 +147,14 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
             break;
         };
         tried.push(start);
-        let useful = least * strongest;
+        let [useful, perhaps] = [&found[..], &[]].map(|found| least(found, strongest, parameters) * strongest);
         if most(frame, rest, start, ALIGNED_DEG + SCAN_DEG) < useful {
             continue;
         }
         let far = |angle: f64, by: f64| found.iter().all(|other| angle_between(other.angle, angle) >= by);
         let worth = |angle: f64| {
             let metres = || aligned(frame, rest, angle, threads).metres;
-            far(angle, separation - HALF_KNOWN_DEG.to_radians()) && (useful == 0.0 || metres() >= HALF_KNOWN * useful)
+            far(angle, separation - HALF_KNOWN_DEG.to_radians()) && (perhaps == 0.0 || metres() >= HALF_KNOWN * perhaps)
         };
         let pixels = rest.along(start, tolerance);
         let Some(angle) = sharpest(&pixels, start, diagonal, threads, worth) else {
@@ -175,6 +172,17 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
         }
     }
     found
+}
+
+/// Beside those that were found, what is less than this share of the strongest is of no use.
+fn least(found: &[Candidate], strongest: f64, parameters: &Parameters) -> f64 {
+    let weight = parameters.directions_min_weight;
+    if parameters.directions_count.is_some() {
+        return 0.0;
+    }
+    // Of the weak ones only a second is taken.
+    let strong = found.iter().filter(|f| f.metres >= weight * strongest && f.exceeds_chance(OTHERS_AMONG_CONTROLS));
+    if strong.count() < 2 { weight.min(SQUARE.1) } else { weight }
 }
 
 /// No less than lines up along an angle, by how many pixels lie along it.
@@ -250,28 +258,29 @@ fn aligned(frame: &Frame, rest: &Oriented, angle: f64, threads: usize) -> Aligne
     let mut sums = Vec::new();
     points.sums(&across, &mut sums, threads);
     let unit = metres_per_unit(frame, angle) / frame.resolution * UNIT as f64;
-    let mut before = 0;
-    let part = |sum: &u64| {
-        let value = u64::from(FRACTIONS) * (sum >> u32::BITS) - (sum & u64::from(u32::MAX)) + before;
-        before = sum & u64::from(u32::MAX);
-        value as f64 * unit
+    let mut before = 0u64;
+    let part = |&sum: &u64| u64::from(u64::on_bin(std::mem::replace(&mut before, sum), sum));
+    let values: Vec<u64> = sums.iter().map(part).collect();
+    let mut sum = 0;
+    let add = |value: &u64| {
+        sum += value;
+        sum
     };
-    let values: Vec<f64> = sums.iter().map(part).collect();
-    let mut sums = vec![0.0];
-    for value in &values {
-        sums.push(sums[sums.len() - 1] + value);
-    }
-    let over = |from: usize, to: usize| sums[to.min(values.len())] - sums[from];
+    let sums: Vec<u64> = std::iter::once(0).chain(values.iter().map(add)).collect();
+    let over = |from: usize, to: usize| (sums[to.min(values.len())] - sums[from]) as f64 * unit;
     let mut on_line = vec![false; values.len()];
     let mut metres = 0.0;
     let mut n = 1;
     while n + 1 < values.len() {
         let peak = over(n - 1, n + 2);
-        let top = values[n] >= values[n - 1] && values[n] > values[n + 1];
-        let (from, to) = (n.saturating_sub(BACKGROUND_PIXELS), (n + BACKGROUND_PIXELS + 1).min(values.len()));
-        let around = (over(from, to) - peak) / (to - from) as f64 * 3.0;
         n += 1;
-        if top && peak > SHORTEST_PIXELS && peak > 2.0 * around {
+        // Hardly any is as high.
+        if peak <= SHORTEST_PIXELS || values[n - 1] < values[n - 2] || values[n - 1] <= values[n] {
+            continue;
+        }
+        let (from, to) = ((n - 1).saturating_sub(BACKGROUND_PIXELS), (n + BACKGROUND_PIXELS).min(values.len()));
+        let around = (over(from, to) - peak) / (to - from) as f64 * 3.0;
+        if peak > 2.0 * around {
             metres += (peak - around) * frame.resolution;
             on_line[n.saturating_sub(3)..(n + 2).min(values.len())].fill(true);
             n += 1;
@@ -284,6 +293,6 @@ fn aligned(frame: &Frame, rest: &Oriented, angle: f64, threads: usize) -> Aligne
 fn take(rest: &mut Oriented, angle: f64, lines: &Aligned, parameters: &Parameters) {
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
     let is_on_line =
-        |pixel: [u32; 2]| lines.across.nearest(pixel).and_then(|bin| lines.on_line.get(bin)).is_some_and(|on| *on);
+        |centre: [f32; 2]| lines.across.nearest(centre).and_then(|bin| lines.on_line.get(bin)).is_some_and(|on| *on);
     rest.remove(angle, tolerance, is_on_line);
 }

@@ -137,8 +137,8 @@ pub fn undirected(angle: f64) -> f64 {
 pub fn angle_between(a: f64, b: f64) -> f64 {
     use std::f64::consts::PI;
     let between = (a - b).abs();
-    // Almost always both are in [-pi/2, pi/2).
-    if between < PI { between.min(PI - between) } else { undirected(between).abs() }
+    // Almost always both are in [-pi/2, pi/2), or so near to it as rounding brings them.
+    if between < 1.5 * PI { between.min((PI - between).abs()) } else { undirected(between).abs() }
 }
 
 /// An occupancy grid, borrowed: nothing is copied or converted.

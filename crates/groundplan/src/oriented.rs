@@ -15,8 +15,12 @@ use std::ops::Range;
 pub(crate) const BINS: usize = 720;
 /// More edge pixels than this are many.
 const MANY: usize = 1 << 23;
-/// So many are handed on at a time.
-const TOGETHER: usize = 1 << 10;
+/// So many are looked at together.
+const TOGETHER: usize = 1 << 8;
+/// From here on a float holds whole numbers only.
+const WHOLE: f64 = 4_503_599_627_370_496.0;
+/// So many pixels one after another are counted apart.
+const TURNS: usize = 2;
 
 /// Edge pixels that have a direction.
 pub(crate) struct Oriented<'a> {
@@ -33,11 +37,14 @@ enum Held<'a> {
     Whole(&'a Gradients, Bits),
 }
 
-/// Sorted by the histogram's bins.
+/// Sorted by the histogram's bins: in each as many as are counted, and behind them the room of those that are gone.
 #[derive(Default)]
 struct Sorted {
-    /// Column and row.
-    pixels: Vec<[u32; 2]>,
+    /// Where each bin begins.
+    starts: Vec<usize>,
+    /// The pixels' centres.
+    xs: Vec<f32>,
+    ys: Vec<f32>,
     angles: Vec<f32>,
     magnitudes: Vec<u8>,
 }
@@ -46,14 +53,15 @@ fn bin(angle: f32) -> usize {
     (((f64::from(angle) / PI + 0.5) * BINS as f64) as usize).min(BINS - 1)
 }
 
-/// Where each bin begins, and where the last one ends.
-fn starts(counts: &[usize]) -> Vec<usize> {
-    let mut sum = 0;
-    let ends = counts.iter().map(|count| {
-        sum += count;
-        sum
-    });
-    std::iter::once(0).chain(ends).collect()
+/// The same of some, side by side.
+fn bins_of(angles: &[f32], bins: &mut [u16; TOGETHER]) {
+    for (to, &angle) in bins.iter_mut().zip(angles) {
+        let place = ((f64::from(angle) / PI + 0.5) * BINS as f64).clamp(0.0, BINS as f64);
+        // Rounded: of such a float the last bits are the whole number.
+        let near = place + WHOLE;
+        let above = if near - WHOLE > place { 1.0 } else { 0.0 };
+        *to = ((near - above).to_bits() as u16).min(BINS as u16 - 1);
+    }
 }
 
 /// The bins that hold all within `tolerance` of `angle`, on the grid, and whether they hold nothing else.
@@ -72,17 +80,30 @@ impl<'a> Oriented<'a> {
     }
 
     fn of(gradients: &'a Gradients, many: bool) -> Self {
-        let mut histogram = vec![0u64; BINS];
-        let mut counts = vec![0usize; BINS];
-        for (&angle, &magnitude) in gradients.angles.iter().zip(&gradients.magnitudes) {
-            let bin = bin(angle);
-            histogram[bin] += u64::from(magnitude);
-            counts[bin] += usize::from(has_direction(magnitude));
+        // Neighbours are often of one bin, and would wait for each other: they are counted in turns.
+        let mut turns = vec![[[0u64; 2]; TURNS]; BINS];
+        let mut bins = Vec::with_capacity(if many { 0 } else { gradients.pixels.len() });
+        let mut some = [0; TOGETHER];
+        for (angles, magnitudes) in gradients.angles.chunks(TOGETHER).zip(gradients.magnitudes.chunks(TOGETHER)) {
+            bins_of(angles, &mut some);
+            for (bins, magnitudes) in some.chunks(TURNS).zip(magnitudes.chunks(TURNS)) {
+                for (turn, (&bin, &magnitude)) in bins.iter().zip(magnitudes).enumerate() {
+                    let [count, sum] = &mut turns[usize::from(bin)][turn];
+                    *count += u64::from(has_direction(magnitude));
+                    *sum += u64::from(magnitude);
+                }
+            }
+            if !many {
+                bins.extend_from_slice(&some[..angles.len()]);
+            }
         }
+        let counts: Vec<usize> =
+            turns.iter().map(|turns| turns.iter().map(|[count, _]| *count as usize).sum()).collect();
+        let histogram = turns.iter().map(|turns| turns.iter().map(|[_, sum]| sum).sum()).collect();
         let held = if many {
             Held::Whole(gradients, Bits::new(gradients.pixels.len()))
         } else {
-            Held::Sorted(Sorted::new(gradients, &counts))
+            Held::Sorted(Sorted::new(gradients, &bins, &counts))
         };
         Self { counts, histogram, held }
     }
@@ -99,47 +120,65 @@ impl<'a> Oriented<'a> {
 
     /// The pixels that lie along `angle`, on the grid, within `tolerance`.
     pub fn along(&self, angle: f64, tolerance: f64) -> Points {
-        let mut found = Points::with_capacity(self.at_most_along(angle, tolerance));
+        let room = self.at_most_along(angle, tolerance);
+        let (mut xs, mut ys) = (Vec::with_capacity(room), Vec::with_capacity(room));
         match &self.held {
             Held::Sorted(sorted) => {
-                sorted.visit(&self.counts, angle, tolerance, |places| found.extend(&sorted.pixels[places]));
+                for (bin, whole) in bins(angle, tolerance) {
+                    let places = sorted.places(bin, &self.counts);
+                    if whole {
+                        xs.extend_from_slice(&sorted.xs[places.clone()]);
+                        ys.extend_from_slice(&sorted.ys[places]);
+                        continue;
+                    }
+                    for n in places.filter(|&n| sorted.is_near(n, angle, tolerance)) {
+                        xs.push(sorted.xs[n]);
+                        ys.push(sorted.ys[n]);
+                    }
+                }
             }
             Held::Whole(all, gone) => {
-                let mut some = Vec::with_capacity(TOGETHER);
                 let is_along = is_along(angle, tolerance);
                 all.iter().enumerate().for_each(|(n, (pixel, along, magnitude))| {
                     if is_along(along, magnitude) && !gone.get(n) {
-                        some.push(pixel);
-                        if some.len() == TOGETHER {
-                            found.extend(&some);
-                            some.clear();
-                        }
+                        let [x, y] = centre(pixel);
+                        xs.push(x);
+                        ys.push(y);
                     }
                 });
-                found.extend(&some);
             }
         }
-        found
+        Points::new(xs, ys)
     }
 
-    /// Takes out those of the pixels along `angle`, on the grid, within `tolerance`, that are to go.
-    pub fn remove(&mut self, angle: f64, tolerance: f64, goes: impl Fn([u32; 2]) -> bool) {
+    /// Takes out those of the pixels along `angle`, on the grid, within `tolerance`, whose centres are such as are to go.
+    pub fn remove(&mut self, angle: f64, tolerance: f64, goes: impl Fn([f32; 2]) -> bool) {
         let Self { counts, histogram, held } = self;
         match held {
             Held::Sorted(sorted) => {
-                let mut gone = vec![false; sorted.pixels.len()];
-                sorted.visit(counts, angle, tolerance, |places| {
-                    gone[places.clone()]
-                        .iter_mut()
-                        .zip(&sorted.pixels[places])
-                        .for_each(|(to, &pixel)| *to = goes(pixel));
-                });
-                sorted.drop(&gone, counts, histogram);
+                for (bin, whole) in bins(angle, tolerance) {
+                    let places = sorted.places(bin, counts);
+                    let first = places.start;
+                    let mut to = first;
+                    for n in places {
+                        sorted.xs[to] = sorted.xs[n];
+                        sorted.ys[to] = sorted.ys[n];
+                        sorted.angles[to] = sorted.angles[n];
+                        sorted.magnitudes[to] = sorted.magnitudes[n];
+                        let near = whole || sorted.is_near(to, angle, tolerance);
+                        if near && goes([sorted.xs[to], sorted.ys[to]]) {
+                            histogram[bin] -= u64::from(sorted.magnitudes[to]);
+                        } else {
+                            to += 1;
+                        }
+                    }
+                    counts[bin] = to - first;
+                }
             }
             Held::Whole(all, gone) => {
                 let is_along = is_along(angle, tolerance);
                 all.iter().enumerate().for_each(|(n, (pixel, along, magnitude))| {
-                    if is_along(along, magnitude) && !gone.get(n) && goes(pixel) {
+                    if is_along(along, magnitude) && !gone.get(n) && goes(centre(pixel)) {
                         gone.insert(n);
                         counts[bin(along)] -= 1;
                         histogram[bin(along)] -= u64::from(magnitude);
@@ -150,65 +189,63 @@ impl<'a> Oriented<'a> {
     }
 }
 
+fn centre(pixel: [u32; 2]) -> [f32; 2] {
+    pixel.map(|place| place as f32 + 0.5)
+}
+
 /// True of what has a direction and lies along `angle`, on the grid, within `tolerance`.
 fn is_along(angle: f64, tolerance: f64) -> impl Fn(f32, u8) -> bool {
     move |along, magnitude| has_direction(magnitude) && angle_between(f64::from(along), angle) <= tolerance
 }
 
 impl Sorted {
-    fn new(gradients: &Gradients, counts: &[usize]) -> Self {
-        let mut next = starts(counts);
-        let count = next[BINS];
-        let mut made = Self { pixels: vec![[0; 2]; count], angles: vec![0.0; count], magnitudes: vec![0; count] };
-        gradients.iter().filter(|(_, _, magnitude)| has_direction(*magnitude)).for_each(|(pixel, angle, magnitude)| {
-            let next = &mut next[bin(angle)];
-            made.pixels[*next] = pixel;
-            made.angles[*next] = angle;
-            made.magnitudes[*next] = magnitude;
-            *next += 1;
+    fn new(gradients: &Gradients, bins: &[u16], counts: &[usize]) -> Self {
+        let mut count = 0;
+        let mut start = |own: &usize| {
+            count += own;
+            count - own
+        };
+        let starts: Vec<usize> = counts.iter().map(&mut start).collect();
+        let mut next = starts.clone();
+        let none = || vec![0.0; count];
+        let mut made = Self { starts, xs: none(), ys: none(), angles: none(), magnitudes: vec![0; count] };
+        gradients.iter().zip(bins).for_each(|((pixel, angle, magnitude), &bin)| {
+            if has_direction(magnitude) {
+                let next = &mut next[usize::from(bin)];
+                [made.xs[*next], made.ys[*next]] = centre(pixel);
+                made.angles[*next] = angle;
+                made.magnitudes[*next] = magnitude;
+                *next += 1;
+            }
         });
         made
     }
 
-    /// Calls `visit` with the places of the pixels that lie along `angle`, on the grid, within `tolerance`.
-    fn visit(&self, counts: &[usize], angle: f64, tolerance: f64, mut visit: impl FnMut(Range<usize>)) {
-        let starts = starts(counts);
-        for (bin, whole) in bins(angle, tolerance) {
-            let places = starts[bin]..starts[bin + 1];
-            if whole {
-                visit(places);
-            } else {
-                let near = |n: &usize| angle_between(f64::from(self.angles[*n]), angle) <= tolerance;
-                places.filter(near).for_each(|n| visit(n..n + 1));
-            }
-        }
+    fn places(&self, bin: usize, counts: &[usize]) -> Range<usize> {
+        self.starts[bin]..self.starts[bin] + counts[bin]
     }
 
-    /// Without those that are gone.
-    fn drop(&mut self, gone: &[bool], counts: &mut [usize], histogram: &mut [u64]) {
-        let mut to = 0;
-        let mut from = 0;
-        for (count, sum) in counts.iter_mut().zip(histogram) {
-            let places = from..from + *count;
-            from = places.end;
-            for place in places {
-                if gone[place] {
-                    *count -= 1;
-                    *sum -= u64::from(self.magnitudes[place]);
-                    continue;
-                }
-                self.pixels[to] = self.pixels[place];
-                self.angles[to] = self.angles[place];
-                self.magnitudes[to] = self.magnitudes[place];
-                to += 1;
-            }
-        }
+    fn is_near(&self, n: usize, angle: f64, tolerance: f64) -> bool {
+        angle_between(f64::from(self.angles[n]), angle) <= tolerance
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::projection::Sum;
+
+    #[test]
+    fn angles_side_by_side_fall_into_the_bins_that_each_falls_into() {
+        let ends = [-PI as f32 / 2.0, PI as f32 / 2.0, -9.0, 9.0, 0.0];
+        let all = (0..TOGETHER).map(|n| ((n as f32 / TOGETHER as f32) - 0.5) * PI as f32);
+        let angles: Vec<f32> = ends.into_iter().chain(all).collect();
+        for angles in angles.chunks(TOGETHER) {
+            let mut bins = [0; TOGETHER];
+            bins_of(angles, &mut bins);
+            assert!(angles.iter().zip(bins).all(|(&angle, found)| bin(angle) == usize::from(found)));
+        }
+    }
 
     #[test]
     fn many_are_found_and_taken_out_as_few_are() {
@@ -224,11 +261,13 @@ mod tests {
             assert_eq!(one.len(), other.len());
             assert!(one.len() > 100);
             let across = one.across(angle, 1, 1);
-            let [mut sums, mut others] = [Vec::new(), Vec::new()];
+            let (mut sums, mut others) = (Vec::<u32>::new(), Vec::<u64>::new());
             one.sums(&across, &mut sums, 1);
             other.sums(&across, &mut others, 1);
-            assert_eq!(sums, others);
-            let goes = |[x, y]: [u32; 2]| (x + y) % 3 != 0;
+            assert!(
+                sums.iter().map(|sum| (sum.count(), sum.parts())).eq(others.iter().map(|s| (s.count(), s.parts())))
+            );
+            let goes = |[x, y]: [f32; 2]| (x + y) as u32 % 3 != 0;
             few.remove(angle, tolerance, goes);
             many.remove(angle, tolerance, goes);
             assert_eq!((&few.counts, &few.histogram), (&many.counts, &many.histogram));

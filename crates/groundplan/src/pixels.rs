@@ -36,12 +36,8 @@ impl Pixels {
     }
 
     /// One more.
-    pub fn push(&mut self, [x, row]: [u32; 2]) {
-        let high = x >> BITS;
-        if self.runs.last().is_none_or(|last| (last.row, last.high) != (row, high)) {
-            self.runs.push(Run { row, high, start: self.columns.len() });
-        }
-        self.columns.push(x as u16);
+    pub fn push(&mut self, pixel: [u32; 2]) {
+        self.extend([pixel]);
     }
 
     /// Column and row of each, in their order; quickest by what takes them all, such as `for_each`.
@@ -61,7 +57,18 @@ impl Pixels {
 
 impl Extend<[u32; 2]> for Pixels {
     fn extend<T: IntoIterator<Item = [u32; 2]>>(&mut self, pixels: T) {
-        pixels.into_iter().for_each(|pixel| self.push(pixel));
+        let Self { runs, columns } = self;
+        let mut last = runs.last().map(|run| (run.row, run.high));
+        let count = columns.len();
+        let column = |(n, [x, row]): (usize, [u32; 2])| {
+            let high = x >> BITS;
+            if last != Some((row, high)) {
+                last = Some((row, high));
+                runs.push(Run { row, high, start: count + n });
+            }
+            x as u16
+        };
+        columns.extend(pixels.into_iter().enumerate().map(column));
     }
 }
 

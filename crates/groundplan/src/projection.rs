@@ -8,10 +8,13 @@ pub(crate) const FRACTIONS: u32 = 16;
 const WHOLE: f32 = 8_388_608.0;
 /// Pixels are projected so many at a time.
 const CHUNK: usize = 16;
+/// Of so many parts of all of them in turn.
+const PARTS: usize = 8;
 /// So many pixels are worth a thread's while.
 pub(crate) const SHARE: usize = 1 << 16;
 
 /// Where some pixels are, to be projected.
+#[derive(Clone)]
 pub(crate) struct Points {
     xs: Vec<f32>,
     ys: Vec<f32>,
@@ -31,49 +34,46 @@ pub(crate) struct Across {
 }
 
 impl Across {
-    /// Which bin each pixel lies in, in parts.
-    fn places(&self, xs: &[f32], ys: &[f32], places: &mut [u32; CHUNK]) {
+    /// Which bin each pixel lies in, and what it adds there.
+    fn places<T: Sum>(&self, xs: &[f32], ys: &[f32], bins: &mut [u32; CHUNK], added: &mut [T; CHUNK]) {
         let [nx, ny] = self.normal;
-        for ((place, x), y) in places.iter_mut().zip(xs).zip(ys) {
+        for (((bin, added), x), y) in bins.iter_mut().zip(added).zip(xs).zip(ys) {
             // Rounded: of such a float the last bits are the whole number.
-            *place = (x * nx + y * ny + self.shift + WHOLE).to_bits() & (WHOLE as u32 - 1);
+            let place = (x * nx + y * ny + self.shift + WHOLE).to_bits() & (WHOLE as u32 - 1);
+            *bin = place / FRACTIONS;
+            *added = T::one(place % FRACTIONS);
         }
     }
 
-    /// The bin that a pixel lies nearest to, if any.
-    pub fn nearest(&self, [x, y]: [u32; 2]) -> Option<usize> {
+    /// The bin that a pixel's centre lies nearest to, if any.
+    pub fn nearest(&self, [x, y]: [f32; 2]) -> Option<usize> {
         let [nx, ny] = self.normal;
-        let place = (x as f32 + 0.5) * nx + (y as f32 + 0.5) * ny + self.shift;
+        let place = x * nx + y * ny + self.shift;
         usize::try_from((place / FRACTIONS as f32 + 0.5) as i64).ok()
     }
 }
 
 impl Points {
-    /// None yet, with room for so many.
-    pub fn with_capacity(count: usize) -> Self {
-        let none = [f64::INFINITY, f64::NEG_INFINITY];
-        Self { xs: Vec::with_capacity(count), ys: Vec::with_capacity(count), within: [none; 2] }
-    }
-
-    /// And some pixels more.
-    pub fn extend(&mut self, pixels: &[[u32; 2]]) {
-        let middle = |axis: usize| pixels.iter().map(move |pixel| pixel[axis] as f32 + 0.5);
-        self.xs.extend(middle(0));
-        self.ys.extend(middle(1));
-        for (axis, ends) in self.within.iter_mut().enumerate() {
-            let places = || pixels.iter().map(|pixel| pixel[axis]);
-            if let (Some(low), Some(high)) = (places().min(), places().max()) {
-                *ends = [ends[0].min(f64::from(low) + 0.5), ends[1].max(f64::from(high) + 0.5)];
-            }
-        }
+    /// Pixels' centres.
+    pub fn new(xs: Vec<f32>, ys: Vec<f32>) -> Self {
+        let within = [ends(&xs), ends(&ys)];
+        Self { xs, ys, within }
     }
 
     /// Those of the pixels that are wanted.
     pub fn only(&self, wanted: impl Fn([u32; 2]) -> bool) -> Self {
-        let mut some = Self::with_capacity(0);
-        let pixels = self.xs.iter().zip(&self.ys).map(|(&x, &y)| [x as u32, y as u32]);
-        pixels.filter(|&pixel| wanted(pixel)).for_each(|pixel| some.extend(&[pixel]));
-        some
+        let mut some = [Vec::new(), Vec::new()];
+        for (xs, ys) in self.xs.chunks(CHUNK).zip(self.ys.chunks(CHUNK)) {
+            let mut kept = [[0.0; CHUNK]; 2];
+            let mut count = 0;
+            for (&x, &y) in xs.iter().zip(ys) {
+                [kept[0][count], kept[1][count]] = [x, y];
+                count += usize::from(wanted([x as u32, y as u32]));
+            }
+            some.iter_mut().zip(&kept).for_each(|(some, kept)| some.extend_from_slice(&kept[..count]));
+        }
+        let [xs, ys] = some;
+        Self::new(xs, ys)
     }
 
     pub fn len(&self) -> usize {
@@ -96,33 +96,31 @@ impl Points {
         }
     }
 
-    /// How many pixels lie between each bin and the next in the upper half, and the sum of their parts in the lower.
-    pub fn sums(&self, across: &Across, sums: &mut Vec<u64>, threads: usize) {
+    /// What lies between each bin and the next.
+    pub fn sums<T: Sum>(&self, across: &Across, sums: &mut Vec<T>, threads: usize) {
         sums.clear();
-        sums.resize(across.count, 0);
-        let count = |sums: &mut Vec<u64>, place: u32| {
-            sums[(place / FRACTIONS) as usize] += 1 << u32::BITS | u64::from(place % FRACTIONS);
-        };
-        let add = |sums: &mut Vec<u64>, from: usize, to: usize| {
-            // Neighbours fall into one bin, and would wait for each other: every fourth part in turn.
-            let quarter = (to - from) / 4 / CHUNK * CHUNK;
-            let mut places = [[0u32; CHUNK]; 4];
-            for chunk in (from..from + quarter).step_by(CHUNK) {
-                for (n, places) in places.iter_mut().enumerate() {
-                    let own = chunk + n * quarter..chunk + n * quarter + CHUNK;
-                    across.places(&self.xs[own.clone()], &self.ys[own], places);
+        sums.resize(across.count, T::default());
+        let add = |sums: &mut Vec<T>, from: usize, to: usize| {
+            // Neighbours fall into one bin, and would wait for each other: parts in turn.
+            let part = (to - from) / PARTS / CHUNK * CHUNK;
+            let mut places = [([0u32; CHUNK], [T::default(); CHUNK]); PARTS];
+            for chunk in (from..from + part).step_by(CHUNK) {
+                for (n, (bins, added)) in places.iter_mut().enumerate() {
+                    let own = chunk + n * part..chunk + n * part + CHUNK;
+                    across.places(&self.xs[own.clone()], &self.ys[own], bins, added);
                 }
                 for n in 0..CHUNK {
-                    for places in &places {
-                        count(sums, places[n]);
+                    for (bins, added) in &places {
+                        sums[bins[n] as usize].add(added[n]);
                     }
                 }
             }
-            let rest = from + 4 * quarter..to;
+            let rest = from + PARTS * part..to;
             for (xs, ys) in self.xs[rest.clone()].chunks(CHUNK).zip(self.ys[rest].chunks(CHUNK)) {
-                across.places(xs, ys, &mut places[0]);
-                for &place in &places[0][..xs.len()] {
-                    count(sums, place);
+                let (bins, added) = &mut places[0];
+                across.places(xs, ys, bins, added);
+                for (&bin, &added) in bins.iter().zip(&*added).take(xs.len()) {
+                    sums[bin as usize].add(added);
                 }
             }
         };
@@ -131,8 +129,78 @@ impl Points {
             return add(sums, 0, self.len());
         }
         let end = |share: usize| self.len() * share / shares;
-        let empty = || vec![0; across.count];
-        let merge = |sum: &mut Vec<u64>, part: Vec<u64>| sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+        let empty = || vec![T::default(); across.count];
+        let merge = |sum: &mut Vec<T>, part: Vec<T>| sum.iter_mut().zip(part).for_each(|(sum, part)| sum.add(part));
         *sums = fold(shares, threads, empty, |sums, share| add(sums, end(share), end(share + 1)), merge);
     }
+
+    /// True where no more pixels lie between a bin and the next than a [`Sum`] of 32 bits counts, with two bins to the
+    /// pixel or more: of a row or of a column there is one.
+    pub fn are_narrow(&self) -> bool {
+        self.within.iter().all(|[low, high]| high - low < f64::from(MOST))
+    }
+}
+
+/// How many pixels there are, in the upper half, and the sum of their parts in the lower.
+pub(crate) trait Sum: Copy + Default + Send {
+    /// A pixel with so many parts.
+    fn one(parts: u32) -> Self;
+    fn add(&mut self, other: Self);
+    fn count(self) -> u32;
+    fn parts(self) -> u32;
+
+    /// What falls on a bin, given what lies before and behind it, in parts.
+    fn on_bin(before: Self, behind: Self) -> u32 {
+        (FRACTIONS * behind.count()).wrapping_sub(behind.parts()).wrapping_add(before.parts())
+    }
+}
+
+impl Sum for u64 {
+    fn one(parts: u32) -> Self {
+        1 << 32 | Self::from(parts)
+    }
+    fn add(&mut self, other: Self) {
+        *self = self.wrapping_add(other);
+    }
+    fn count(self) -> u32 {
+        (self >> 32) as u32
+    }
+    fn parts(self) -> u32 {
+        self as u32
+    }
+}
+
+/// So many pixels at most.
+const MOST: u32 = u16::MAX as u32 / FRACTIONS;
+
+impl Sum for u32 {
+    fn one(parts: u32) -> Self {
+        1 << 16 | parts
+    }
+    fn add(&mut self, other: Self) {
+        *self = self.wrapping_add(other);
+    }
+    fn count(self) -> u32 {
+        self >> 16
+    }
+    fn parts(self) -> u32 {
+        self & 0xffff
+    }
+}
+
+/// The lowest and the highest of some numbers.
+fn ends(values: &[f32]) -> [f64; 2] {
+    let (mut low, mut high) = ([f32::INFINITY; CHUNK], [f32::NEG_INFINITY; CHUNK]);
+    let mut look = |values: &[f32]| {
+        for ((value, low), high) in values.iter().zip(&mut low).zip(&mut high) {
+            *low = if value < low { *value } else { *low };
+            *high = if value > high { *value } else { *high };
+        }
+    };
+    let chunks = values.chunks_exact(CHUNK);
+    let rest = chunks.remainder();
+    chunks.for_each(&mut look);
+    look(rest);
+    let (low, high) = (low.into_iter().reduce(f32::min), high.into_iter().reduce(f32::max));
+    [low, high].map(|end| f64::from(end.unwrap_or_default()))
 }

@@ -30,28 +30,35 @@ const SPECK_SHARE: i64 = 4;
 const BITS: u32 = 20;
 /// Fixed-point bits of the place between two bins.
 const FRACTION_BITS: u32 = 4;
+/// Bits of a sum of weighed parts: more than those of all pixels that one bin can hold.
+const PARTS_BITS: u32 = 36;
 
 /// Sums of pixels' weights over offset across `angle` (on the grid), split between the two nearest bins, and the offset
 /// of the first bin in pixels.
-pub(crate) fn project(frame: &Frame, angle: f64, pixels: impl Iterator<Item = ([u32; 2], i64)>) -> (i64, Vec<i64>) {
+pub(crate) fn project(frame: &Frame, angle: f64, pixels: impl Iterator<Item = ([u32; 2], u64)>) -> (i64, Vec<i64>) {
     let [nx, ny] = normal(angle);
     let (width, height) = (frame.width as i64, frame.height as i64);
     let corners = [0, nx * width, ny * height, nx * width + ny * height].map(|c| c >> BITS);
     let first = corners.into_iter().min().unwrap_or(0) - 2;
     let last = corners.into_iter().max().unwrap_or(0) + 2;
-    let mut bins = vec![0i64; (last - first + 1) as usize];
+    // For each place between two bins the sum of the weights, and in the lower bits that of their parts.
+    let mut sums = vec![0u64; (last - first + 1) as usize];
     // Half pixels times 2^BITS to fractions of a bin, rounded; bins sit at whole pixels.
     let shift = BITS + 1 - FRACTION_BITS;
-    let half = 1 << (shift - 1);
+    let half = (1 << (shift - 1)) - (first << (shift + FRACTION_BITS));
     pixels.for_each(|(pixel, weight)| {
         let [x, y] = centre(pixel);
         let place = (nx * x + ny * y + half) >> shift;
-        let bin = (place >> FRACTION_BITS) - first;
-        let part = place & ((1 << FRACTION_BITS) - 1);
-        bins[bin as usize] += weight * ((1 << FRACTION_BITS) - part);
-        bins[bin as usize + 1] += weight * part;
+        let part = place as u64 & ((1 << FRACTION_BITS) - 1);
+        let sum = &mut sums[(place >> FRACTION_BITS) as usize];
+        *sum = sum.wrapping_add(weight * (1 << PARTS_BITS | part));
     });
-    (first, bins)
+    let mut before = 0;
+    let value = |sum: u64| {
+        let (weight, parts) = ((sum >> PARTS_BITS) as i64, (sum & ((1 << PARTS_BITS) - 1)) as i64);
+        (weight << FRACTION_BITS) - parts + std::mem::replace(&mut before, parts)
+    };
+    (first, sums.into_iter().map(value).collect())
 }
 
 /// Column and row, doubled plus one: the pixel's centre in half pixels.
@@ -101,7 +108,7 @@ pub fn find_radiograms(
         // The pixels that lie along it; those without a direction count a little too, as the posts of a rack do.
         let weighed = gradients
             .iter()
-            .map(|(pixel, along, magnitude)| (pixel, weight(f64::from(along), magnitude, angle, tolerance)));
+            .map(|(pixel, along, magnitude)| (pixel, weight(f64::from(along), magnitude, angle, tolerance) as u64));
         let (first, bins) = project(frame, angle, weighed.filter(|(_, weight)| *weight > 0));
         let unit = metres_per_unit(frame, angle);
         // Turning by pi flips the normal, so the map frame's offsets may run the other way.

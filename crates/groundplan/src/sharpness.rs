@@ -1,6 +1,7 @@
 //! II-A: the angle at which the projection of some pixels is sharpest.
 
-use crate::projection::{FRACTIONS, Points};
+use crate::projection::{Points, Sum};
+use std::borrow::Cow;
 
 /// How sharp the projection of some pixels is: the sum of the squares of its smoothed bins. It is greatest where walls
 /// fall on single bins. The bins are finer than a pixel and smoothed over more than one, so that it does not matter
@@ -8,7 +9,9 @@ use crate::projection::{FRACTIONS, Points};
 /// look sharper than the right one.
 struct Sharpness<'a> {
     points: &'a Points,
-    sums: Vec<u64>,
+    narrow: bool,
+    small: Vec<u32>,
+    large: Vec<u64>,
     threads: usize,
 }
 
@@ -19,7 +22,7 @@ const CHUNK: usize = 128;
 
 impl<'a> Sharpness<'a> {
     fn new(points: &'a Points, threads: usize) -> Self {
-        Self { points, sums: Vec::new(), threads }
+        Self { points, narrow: points.are_narrow(), small: Vec::new(), large: Vec::new(), threads }
     }
 
     /// Of few bins and smoothed little: a few short lines show among much else.
@@ -36,27 +39,34 @@ impl<'a> Sharpness<'a> {
     fn over<const PER_PIXEL: usize, const WIDTH: usize>(&mut self, angle: f64) -> f64 {
         // So much is free at both ends that smoothing finds zeros there, and whole chunks beyond.
         let across = self.points.across(angle, PER_PIXEL, 2 * WIDTH);
-        self.points.sums(&across, &mut self.sums, self.threads);
-        self.sums.resize(across.count.next_multiple_of(CHUNK) + 2 * WIDTH, 0);
-        let chunks = self.sums.windows(CHUNK + 2 * WIDTH - 1).step_by(CHUNK);
-        chunks.map(|sums| smoothed::<WIDTH>(sums).iter().map(|&v| u64::from(v).pow(2)).sum::<u64>() as f64).sum()
+        if self.narrow {
+            self.points.sums(&across, &mut self.small, self.threads);
+            squares::<u32, WIDTH>(&mut self.small)
+        } else {
+            self.points.sums(&across, &mut self.large, self.threads);
+            squares::<u64, WIDTH>(&mut self.large)
+        }
     }
 }
 
-/// A chunk of bins, as [`Points::sums`] has them, smoothed twice over so many.
-fn smoothed<const WIDTH: usize>(sums: &[u64]) -> [u32; CHUNK] {
+/// The sum of the squares of the bins, given what lies between them, smoothed twice over so many.
+fn squares<T: Sum, const WIDTH: usize>(sums: &mut Vec<T>) -> f64 {
+    sums.resize(sums.len().next_multiple_of(CHUNK) + 2 * WIDTH, T::default());
+    let chunks = sums.windows(CHUNK + 2 * WIDTH - 1).step_by(CHUNK);
+    chunks.map(|sums| smoothed::<T, WIDTH>(sums).iter().map(|&v| u64::from(v).pow(2)).sum::<u64>() as f64).sum()
+}
+
+/// A chunk of bins, given what lies between them, smoothed twice over so many.
+fn smoothed<T: Sum, const WIDTH: usize>(sums: &[T]) -> [u32; CHUNK] {
     let mut bins = [0u32; CHUNK + 2 * WIDEST];
     for (to, pair) in bins.iter_mut().zip(sums.windows(2)) {
-        let count = (pair[1] >> u32::BITS) as u32;
-        *to = (FRACTIONS * count).wrapping_sub(pair[1] as u32).wrapping_add(pair[0] as u32);
+        *to = T::on_bin(pair[0], pair[1]);
     }
-    // Sums over two, of them over two, and so on.
+    // Sums over two twice over, of them over two, and so on.
     let mut width = 1;
     while width < WIDTH {
-        for _ in 0..2 {
-            for n in 0..CHUNK + 2 * (WIDTH - width) {
-                bins[n] = bins[n].wrapping_add(bins[n + width]);
-            }
+        for n in 0..CHUNK + 2 * (WIDTH - 2 * width) {
+            bins[n] = bins[n].wrapping_add(bins[n + width] << 1).wrapping_add(bins[n + 2 * width]);
         }
         width *= 2;
     }
@@ -158,8 +168,11 @@ impl Best {
 }
 
 /// About so many of the pixels as a sample has, by where they are: what changes elsewhere changes nothing of it.
-fn sample(pixels: &Points) -> Points {
+fn sample(pixels: &Points) -> Cow<'_, Points> {
     let share = (pixels.len() / SAMPLE + 1).ilog2();
     let hash = |[x, y]: [u32; 2]| (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77)).wrapping_mul(0xC2B2_AE3D);
-    pixels.only(|pixel| u64::from(hash(pixel)) << share >> u32::BITS == 0)
+    if share == 0 {
+        return Cow::Borrowed(pixels);
+    }
+    Cow::Owned(pixels.only(|pixel| u64::from(hash(pixel)) << share >> u32::BITS == 0))
 }
