@@ -9,11 +9,14 @@ use super::beside::{Beside, placed, wider};
 use super::columns::{BAY, Column, NARROWED, Side, Walled, count};
 use super::recall::{Key, Recall};
 use super::runs::{best_pieces, runs};
+use super::sums::What;
+use super::sweep::Sweep;
 use super::turned::{BARRED, IMPASSABLE, Turned};
 use super::{Evidence, barriers, mouths, ragged};
 use crate::bands::map_each;
 use crate::parameters::Parameters;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A strip of free space along one direction, in the direction's own places (metres along and across).
 #[derive(Clone, Debug, PartialEq)]
@@ -181,7 +184,7 @@ struct Family<'a> {
     /// True when racks stand in the place: somewhere bays recur.
     racked: bool,
     parameters: &'a Parameters,
-    sides: Vec<Side>,
+    sides: Arc<Vec<Side>>,
 }
 
 /// A strip between two lines, in little room: of a large map there are millions, of which few stay.
@@ -228,18 +231,34 @@ impl<'a> Family<'a> {
             racked,
             view,
             parameters: evidence.parameters,
-            sides: (0..view.offsets.len())
-                .map(|n| Side::new(view, n, bay, racked, mouths.get(n).map_or(&[], Vec::as_slice)))
-                .collect(),
+            sides: Arc::new(
+                (0..view.offsets.len())
+                    .map(|n| Side::new(view, n, bay, racked, mouths.get(n).map_or(&[], Vec::as_slice)))
+                    .collect(),
+            ),
         }
+    }
+
+    /// The same in a view that has some rows at hand.
+    fn seen_in<'v>(&self, view: &'v Turned) -> Family<'v>
+    where
+        'a: 'v,
+    {
+        Family { view, pitches: self.pitches.clone(), sides: Arc::clone(&self.sides), ..*self }
+    }
+
+    /// Over the lower lines of strips.
+    fn sweep(&self) -> Sweep<'_> {
+        let around = [BESIDE.1, self.parameters.labels_max_width + BESIDE.1];
+        Sweep { view: self.view, places: &self.view.offsets, around, what: &[What::Blocked, What::Barred] }
     }
 
     /// The strips between every two lines that are a corridor's width apart.
     fn candidates(&self, threads: usize, recall: &Recall) -> Vec<Candidate> {
-        let above = |low: usize| {
-            let mut found = Vec::new();
-            for high in low + 1..self.view.offsets.len() {
-                let across = [self.view.offsets[low], self.view.offsets[high]];
+        self.sweep().find(1, threads, |view, low, found| {
+            let own = self.seen_in(view);
+            for high in low + 1..view.offsets.len() {
+                let across = [view.offsets[low], view.offsets[high]];
                 let width = across[1] - across[0];
                 if width > self.parameters.labels_max_width {
                     break;
@@ -247,52 +266,46 @@ impl<'a> Family<'a> {
                 if width >= self.parameters.labels_min_width {
                     let sides = [low, high];
                     let key = || {
-                        let key = self.view.key(across, BESIDE.1).with(u64::from(self.racked));
+                        let key = view.key(across, BESIDE.1).with(u64::from(self.racked));
                         self.pitches.iter().copied().fold(key, Key::number)
                     };
                     let pieces = recall.strips.or_find(key, || {
                         let pieces = |open: Range<usize>| {
-                            let columns = self.columns(sides, open.clone());
-                            self.pieces(&columns, open.start, across)
+                            let columns = own.columns(sides, open.clone());
+                            own.pieces(&columns, open.start, across)
                         };
-                        self.open(across).into_iter().flat_map(pieces).collect()
+                        own.open(across).into_iter().flat_map(pieces).collect()
                     });
-                    found.extend(pieces.iter().map(|(strip, whole)| Candidate::new(self.view, sides, strip, *whole)));
+                    found.extend(pieces.iter().map(|(strip, whole)| Candidate::new(view, sides, strip, *whole)));
                 }
             }
-            found
-        };
-        map_each(self.view.offsets.len(), threads, above).into_iter().flatten().collect()
+        })
     }
 
     /// The corridors into which others open side by side.
     fn before_mouths(&self, mouths: &[Vec<Range<usize>>], threads: usize) -> Vec<Candidate> {
-        let offsets = &self.view.offsets;
-        let above = |low: usize| {
-            let mut found = Vec::new();
-            for high in low + 1..offsets.len() {
-                let (across, sides) = ([offsets[low], offsets[high]], [low, high]);
+        self.sweep().find(1, threads, |view, low, found| {
+            let own = self.seen_in(view);
+            for high in low + 1..view.offsets.len() {
+                let (across, sides) = ([view.offsets[low], view.offsets[high]], [low, high]);
                 let width = across[1] - across[0];
                 if width > self.parameters.labels_max_width {
                     break;
                 }
-                let led_to = |strip: &Strip| sides.iter().any(|&side| self.is_led_to(strip, side, &mouths[side]));
+                let led_to = |strip: &Strip| sides.iter().any(|&side| own.is_led_to(strip, side, &mouths[side]));
                 let may_be = |columns: &Range<usize>| {
-                    sides.iter().any(|&side| self.opening(&mouths[side], width, columns).count() >= LEAST_MOUTHS)
+                    sides.iter().any(|&side| own.opening(&mouths[side], width, columns).count() >= LEAST_MOUTHS)
                 };
-                if width < self.parameters.labels_min_width || !may_be(&(0..self.view.size[0])) {
+                if width < self.parameters.labels_min_width || !may_be(&(0..view.size[0])) {
                     continue;
                 }
-                for open in self.open(across).into_iter().filter(may_be) {
-                    let columns = self.columns(sides, open.clone());
-                    let strips = self.strips(&columns, open.start, across);
-                    found
-                        .extend(strips.iter().filter(|s| led_to(s)).map(|s| Candidate::new(self.view, sides, s, true)));
+                for open in own.open(across).into_iter().filter(may_be) {
+                    let columns = own.columns(sides, open.clone());
+                    let strips = own.strips(&columns, open.start, across);
+                    found.extend(strips.iter().filter(|s| led_to(s)).map(|s| Candidate::new(view, sides, s, true)));
                 }
             }
-            found
-        };
-        map_each(offsets.len(), threads, above).into_iter().flatten().collect()
+        })
     }
 
     /// The mouths within some columns that may open into a strip so wide: beside wide aisles, what is narrow is in a row.

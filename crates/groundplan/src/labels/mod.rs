@@ -36,6 +36,7 @@ mod squares;
 mod strips;
 mod summed;
 mod sums;
+mod sweep;
 mod turned;
 mod uprights;
 mod whole;

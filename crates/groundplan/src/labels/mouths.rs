@@ -1,6 +1,7 @@
 //! Where corridors of other directions open into a line side by side: what lies there is no gap in a side, but the
 //! mouths of ways that are known.
 
+use super::beside::wider;
 use super::corridors::Strip;
 use super::turned::Turned;
 use std::ops::Range;
@@ -16,17 +17,26 @@ const ALIKE: f64 = 0.1;
 pub fn of(views: &[Turned], view: &Turned, strips: &[Strip]) -> Vec<Vec<Range<usize>>> {
     let square = |strip: &&Strip| libm::sin(views[strip.direction].angle - view.angle).abs() >= SQUARE;
     let others: Vec<&Strip> = strips.iter().filter(square).filter(|strip| !strip.bays).collect();
-    let on = |&offset: &f64| {
-        let reaching: Vec<_> =
-            others.iter().filter_map(|strip| Some((*strip, mouth(views, view, offset, strip)?))).collect();
-        let is_alike = |one: &Strip, two: &Strip| {
-            let wider = one.width().max(two.width());
-            one.direction == two.direction && (one.width() - two.width()).abs() <= ALIKE * wider
-        };
+    // Of each line the strips that reach it.
+    let mut reaching: Vec<Vec<(&Strip, Range<usize>)>> = vec![Vec::new(); view.offsets.len()];
+    for strip in others {
+        let other = &views[strip.direction];
+        let ends = wider(strip.along, NEAR + view.cell).map(|s| view.place(other.to_map([s, strip.middle()]))[1]);
+        for line in view.lines(ends[0].min(ends[1]), ends[0].max(ends[1])) {
+            if let Some(mouth) = mouth(views, view, view.offsets[line], strip) {
+                reaching[line].push((strip, mouth));
+            }
+        }
+    }
+    let is_alike = |one: &Strip, two: &Strip| {
+        let wider = one.width().max(two.width());
+        one.direction == two.direction && (one.width() - two.width()).abs() <= ALIKE * wider
+    };
+    let side_by_side = |reaching: Vec<(&Strip, Range<usize>)>| {
         let beside = |n: usize| (0..reaching.len()).any(|m| m != n && is_alike(reaching[n].0, reaching[m].0));
         (0..reaching.len()).filter(|&n| beside(n)).map(|n| reaching[n].1.clone()).collect()
     };
-    view.offsets.iter().map(on).collect()
+    reaching.into_iter().map(side_by_side).collect()
 }
 
 /// Where a corridor opens into a line, if it reaches it.

@@ -7,9 +7,10 @@
 use super::beside::Beside;
 use super::corridors::{self, Strip, UNTOLD};
 use super::runs::{best_pieces, close};
+use super::sums::What;
+use super::sweep::Sweep;
 use super::turned::{IMPASSABLE, Shares, Turned};
 use super::{Evidence, barriers};
-use crate::bands::map_each;
 use std::ops::Range;
 
 /// Widths are tried in such steps, and places across in such shares of the width.
@@ -83,7 +84,8 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     let parameters = evidence.parameters;
     let bay = corridors::pitches(views, view).into_iter().fold(0.0, |widest, pitch| f64::max(widest, BAY * pitch));
     let seen = Seen::new(view);
-    let mut tried = Vec::new();
+    let (mut tried, mut lows) = (Vec::new(), Vec::new());
+    let mut widest: f64 = 0.0;
     let mut width = parameters.labels_min_width;
     while width <= WIDEST * parameters.labels_max_width {
         let step = (STEP * width).max(view.cell);
@@ -96,18 +98,21 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
                 continue;
             }
             tried.push((across, deep));
+            lows.push(low);
+            widest = widest.max(width);
         }
         width *= WIDER;
     }
-    let ways = |(across, deep): &([f64; 2], Option<Held>)| {
-        let key = || view.key(*across, depth(*across)).number(bay).with(u64::from(deep.is_some()));
-        evidence.recall.ragged.or_find(key, || Candidate::new(view, *across, bay).ways(*deep))
-    };
-    let short = |n: usize| ways(&tried[n]).into_iter().map(move |(way, by)| Short::new(view, n, &way, by));
-    let part = |n: usize| (n * TOGETHER..tried.len().min((n + 1) * TOGETHER)).flat_map(short).collect::<Vec<_>>();
-    let parts = map_each(tried.len().div_ceil(TOGETHER), threads, part);
-    let mut candidates: Vec<Short> = parts.into_iter().flatten().collect();
-    candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+    let depth_of_all = depth([0.0, widest]);
+    let around = [depth_of_all, widest + depth_of_all];
+    let sweep = Sweep { view, places: &lows, around, what: &[What::Blocked, What::Occupied] };
+    let mut candidates = sweep.find(TOGETHER, threads, |view, n, found| {
+        let (across, deep) = tried[n];
+        let key = || view.key(across, depth(across)).number(bay).with(u64::from(deep.is_some()));
+        let ways = evidence.recall.ragged.or_find(key, || Candidate::new(view, across, bay).ways(deep));
+        found.extend(ways.into_iter().map(|(way, by)| Short::new(view, n, &way, by)));
+    });
+    candidates.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.tried.cmp(&b.tried)));
     let mut all = known.to_vec();
     let mut placed = Beside::of(view);
     let mut next = 0;

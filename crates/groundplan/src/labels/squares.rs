@@ -1,5 +1,6 @@
 //! The cells of a large view in squares, those that are all alike as one number: most of a large map is.
 
+use super::summed::Summed;
 use super::sums::{What, barred};
 use std::cell::Cell;
 use std::ops::Range;
@@ -31,6 +32,15 @@ struct Square {
 impl Square {
     fn new(cells: [u64; SIDE], barred: [u8; SIDE]) -> Self {
         Self { cells, barred, whole: cells.iter().map(|row| row & LOW).sum() }
+    }
+
+    /// What its rows hold, a byte for each column.
+    fn rows(&self, what: What) -> [u64; SIDE] {
+        match what {
+            What::Blocked => self.cells.map(|row| row & LOW),
+            What::Occupied => self.cells.map(|row| row >> 4 & LOW),
+            What::Barred => self.barred.map(spread),
+        }
     }
 
     /// The sums of some rows, a byte for each column.
@@ -101,6 +111,36 @@ impl<'a> SquaredRows<'a> {
         sums.drain(..before);
         sums
     }
+}
+
+/// The sums of some rows of bands of a view so many cells wide, of what is asked; they take the room of others.
+pub fn sums(bands: &[Band], width: usize, what: &[What], rows: Range<usize>, room: Summed) -> Summed {
+    let across = width.div_ceil(SIDE);
+    let width = across * SIDE;
+    Summed::of_rows(width, rows.clone(), what, room, |what, sums| {
+        sums[..width].fill(0);
+        for n in rows.start / SIDE..rows.end.div_ceil(SIDE) {
+            let band = &bands[n / BAND];
+            let own = rows.start.saturating_sub(n * SIDE)..(rows.end - n * SIDE).min(SIDE);
+            let (before, after) = sums.split_at_mut((n * SIDE + own.start - rows.start + 1) * width);
+            let last = before[before.len() - width..].chunks_exact(SIDE);
+            let mut after: Vec<_> =
+                after.chunks_mut(width).take(own.len()).map(|row| row.chunks_exact_mut(SIDE)).collect();
+            for (&place, last) in band.places[n % BAND * across..][..across].iter().zip(last) {
+                let rows = if place & ALIKE != 0 {
+                    [u64::from(of_cell(place as u8, what)) * ONES; SIDE]
+                } else {
+                    band.squares[place as usize].rows(what)
+                };
+                let mut sum = [0u16; SIDE];
+                sum.copy_from_slice(last);
+                for (row, to) in rows[own.clone()].iter().zip(&mut after) {
+                    sum.iter_mut().zip(row.to_le_bytes()).for_each(|(sum, byte)| *sum += u16::from(byte));
+                    to.next().into_iter().for_each(|to| to.copy_from_slice(&sum));
+                }
+            }
+        }
+    })
 }
 
 /// Some rows of a row of squares.

@@ -48,6 +48,33 @@ impl Summed {
         made
     }
 
+    /// Of so many columns and some rows, without what is told of them; `add` puts in all sums, a row of nothing first, in
+    /// place of what is there.
+    pub fn of_rows(
+        width: usize,
+        rows: Range<usize>,
+        what: &[What],
+        room: Self,
+        add: impl Fn(What, &mut [u16]),
+    ) -> Self {
+        let mut sums = room.sums;
+        for (n, of) in sums.iter_mut().enumerate() {
+            let Some(&what) = what.iter().find(|what| **what as usize == n) else {
+                of.clear();
+                continue;
+            };
+            of.resize((rows.len() + 1) * width, 0);
+            add(what, of);
+        }
+        Self { part: Part { columns: 0..width, rows }, samples: 0, sums, told: Vec::new() }
+    }
+
+    /// True when it has the sums of some rows.
+    pub fn holds(&self, what: What, rows: Range<usize>) -> bool {
+        let own = &self.part.rows;
+        !self.sums[what as usize].is_empty() && own.start <= rows.start && rows.end <= own.end
+    }
+
     /// With the rows that follow.
     pub fn extend(&mut self, more: Self) {
         let width = self.part.columns.len();

@@ -1,13 +1,15 @@
 //! The cells of a view as sums: of how many samples, or cells, of a column something is true between any two places
 //! across.
 //!
-//! A view of few cells keeps its sums from the first row on. One of many keeps squares of cells.
+//! A view of few cells keeps its sums from the first row on. One of many keeps squares of cells, and where it is gone over
+//! from row to row the sums of some rows for as long as they are asked.
 
 use super::recall::Key;
-use super::squares::{Band, SquaredRows};
+use super::squares::{self, Band, SquaredRows};
 use super::summed::{Part, Summed, SummedRows};
 use crate::bands::map_bands;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// What is asked of a cell.
 #[derive(Clone, Copy)]
@@ -28,10 +30,11 @@ const SAMPLES: usize = 9;
 /// The cells of a view.
 pub enum Cells {
     Summed(Summed),
-    /// Bands of rows of squares.
+    /// Bands of rows of squares, and the sums of some rows.
     Squared {
         width: usize,
-        bands: Vec<Band>,
+        bands: Arc<Vec<Band>>,
+        near: Summed,
     },
 }
 
@@ -54,7 +57,7 @@ impl Told {
 
 impl Default for Cells {
     fn default() -> Self {
-        Self::Squared { width: 0, bands: Vec::new() }
+        Self::Squared { width: 0, bands: Arc::default(), near: Summed::default() }
     }
 }
 
@@ -77,7 +80,7 @@ impl Cells {
                 (Band::new(width, &cells), told)
             });
             let (bands, told): (_, Vec<_>) = made.into_iter().unzip();
-            return (Self::Squared { width, bands }, told.concat());
+            return (Self::Squared { width, bands: Arc::new(bands), near: Summed::default() }, told.concat());
         }
         // Where keys are asked for, they are of whole rows.
         let seen = if keyed || seen.columns.is_empty() { Part { columns: 0..width, rows: 0..height } } else { seen };
@@ -101,7 +104,23 @@ impl Cells {
     pub fn rows(&self, what: What, from: usize, to: usize) -> Rows<'_> {
         match self {
             Self::Summed(summed) => Rows::Summed(summed.rows(what, from, to)),
-            Self::Squared { width, bands } => Rows::Squared(SquaredRows::new(bands, *width, what, from, to)),
+            Self::Squared { near, .. } if near.holds(what, from..to) => Rows::Summed(near.rows(what, from, to)),
+            Self::Squared { width, bands, .. } => Rows::Squared(SquaredRows::new(bands, *width, what, from, to)),
+        }
+    }
+
+    /// Squares with the sums of some rows, of what will be asked of them; they take the room of others.
+    pub fn near(&self, what: &[What], rows: Range<usize>, room: Summed) -> Option<Self> {
+        let Self::Squared { width, bands, .. } = self else { return None };
+        let near = squares::sums(bands, *width, what, rows, room);
+        Some(Self::Squared { width: *width, bands: Arc::clone(bands), near })
+    }
+
+    /// The sums of some rows that there are beside squares.
+    pub fn into_near(self) -> Summed {
+        match self {
+            Self::Summed(_) => Summed::default(),
+            Self::Squared { near, .. } => near,
         }
     }
 }
@@ -162,5 +181,43 @@ pub fn barred(row: &[u8], barred: &mut [u8]) {
     barred[1..].iter_mut().zip(row).for_each(|(to, before)| *to |= before >> 4);
     for to in barred {
         *to = u8::from(*to != 0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_are_laid_out_answer_as_the_squares_they_are_from() {
+        // So high that it is kept in squares: stretches that are all alike, and others.
+        let (width, height) = (45, 7300);
+        let make = |row: usize, first: usize, cells: &mut [u8]| {
+            for (column, cell) in (first..).zip(cells) {
+                let mixed = (row / 20 + column / 9) % 3 == 0;
+                *cell = if mixed { [0, 4, 0x21, 0x44][(row * 7 + column * 5) % 4] } else { 4 };
+            }
+        };
+        let part = Part { columns: 0..width, rows: 0..height };
+        let (squared, _) = Cells::new([width, height], 4, part, false, 1, make);
+        let asked = [What::Blocked, What::Barred];
+        let mut room = Summed::default();
+        for rows in [0..130, 61..333, 7170..7300, 505..506] {
+            let near = squared.near(&asked, rows.clone(), room).unwrap();
+            let ends = [(rows.start, rows.end), (rows.start, rows.start + 1), (rows.end - 1, rows.end)];
+            let middle = rows.start.midpoint(rows.end);
+            for (from, to) in ends.into_iter().chain([(middle, middle), (rows.start, middle), (middle, rows.end)]) {
+                for what in asked {
+                    let rows = near.rows(what, from, to);
+                    assert!(matches!(rows, Rows::Summed(_)));
+                    assert_eq!(rows.over(0..width), squared.rows(what, from, to).over(0..width));
+                }
+            }
+            // What was not laid out is asked of the squares.
+            let others =
+                [near.rows(What::Occupied, middle, middle + 1), near.rows(What::Barred, rows.start, rows.end + 1)];
+            assert!(rows.end == height || others.iter().all(|rows| matches!(rows, Rows::Squared(_))));
+            room = near.into_near();
+        }
     }
 }

@@ -6,11 +6,12 @@ use super::look::{LANES, Look};
 use super::on_line::OnLine;
 use super::racks::Row;
 use super::recall::Key;
-use super::summed::Part;
+use super::summed::{Part, Summed};
 use super::sums::{Cells, Rows, Told, What};
 use crate::bits::Bits;
 use crate::radiograms::weight;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Cells of the turned raster are about this large, metres.
 const CELL: f64 = 0.1;
@@ -51,17 +52,17 @@ pub struct Turned {
     /// Distance from post to post along its lines, metres, where posts recur.
     pub pitch: Option<f64>,
     /// Offsets of the direction's lines, ascending.
-    pub offsets: Vec<f64>,
+    pub offsets: Arc<Vec<f64>>,
     /// For each of those lines, whether structure lies on it in each column.
-    pub covered: Vec<Bits>,
+    pub covered: Arc<Vec<Bits>>,
     /// The same for what only touches it: posts, and the ends of what lies across.
-    pub touched: Vec<Bits>,
+    pub touched: Arc<Vec<Bits>>,
     /// What is told of each row of cells.
-    pub rows: Vec<Told>,
+    pub rows: Arc<Vec<Told>>,
     /// Corners of racks that stand on legs, whose ground is taken.
     on_legs: Vec<Vec<[f64; 2]>>,
     /// Keys of the view without its rows and lines, and of its lines.
-    keys: (Key, Vec<Key>),
+    keys: (Key, Arc<Vec<Key>>),
 }
 
 impl Turned {
@@ -97,12 +98,12 @@ impl Turned {
             cells: Cells::default(),
             samples,
             pitch: None,
-            offsets: Vec::new(),
-            covered: Vec::new(),
-            touched: Vec::new(),
-            rows: Vec::new(),
+            offsets: Arc::default(),
+            covered: Arc::default(),
+            touched: Arc::default(),
+            rows: Arc::default(),
             on_legs: Vec::new(),
-            keys: (Key::default(), Vec::new()),
+            keys: (Key::default(), Arc::default()),
         };
         made.stand(evidence, on_legs);
         made.cover_lines(evidence);
@@ -111,7 +112,8 @@ impl Turned {
 
     /// And all that lies between them; of the gradients the specks are asked.
     pub fn see(&mut self, evidence: &Evidence, look: &Look) {
-        (self.cells, self.rows) = self.look_at(evidence, look);
+        let (cells, rows) = self.look_at(evidence, look);
+        (self.cells, self.rows) = (cells, Arc::new(rows));
         self.pitch = super::pitch::find(evidence, self);
         if evidence.recall.keeps() {
             self.keys = self.find_keys();
@@ -121,8 +123,35 @@ impl Turned {
     /// Lets go of all that is seen: what is left says where places are.
     pub fn let_go(&mut self) {
         self.cells = Cells::default();
-        (self.rows, self.offsets, self.keys.1) = (Vec::new(), Vec::new(), Vec::new());
-        (self.covered, self.touched) = (Vec::new(), Vec::new());
+        (self.rows, self.offsets, self.keys.1) = (Arc::default(), Arc::default(), Arc::default());
+        (self.covered, self.touched) = (Arc::default(), Arc::default());
+    }
+
+    /// True when the cells are too many for sums of all rows.
+    pub fn is_large(&self) -> bool {
+        matches!(self.cells, Cells::Squared { .. })
+    }
+
+    /// A large view with the sums of what lies between two places across, for what will be asked of it.
+    pub fn near(&self, what: &[What], low: f64, high: f64, room: Summed) -> Option<Self> {
+        let (from, to) = self.cells(low, high);
+        // What is rounded to cells may reach one farther.
+        let rows = from.saturating_sub(1)..(to + 1).min(self.size[1]);
+        Some(Self {
+            cells: self.cells.near(what, rows, room)?,
+            offsets: Arc::clone(&self.offsets),
+            covered: Arc::clone(&self.covered),
+            touched: Arc::clone(&self.touched),
+            rows: Arc::clone(&self.rows),
+            on_legs: Vec::new(),
+            keys: (self.keys.0, Arc::clone(&self.keys.1)),
+            ..*self
+        })
+    }
+
+    /// The room of such sums.
+    pub fn into_room(self) -> Summed {
+        self.cells.into_near()
     }
 
     /// The samples that are blocked or occupied in each cell.
@@ -188,23 +217,23 @@ impl Turned {
         let frame = &evidence.grid.frame;
         let lines = evidence.lines;
         let strong = STRONG.0.min(STRONG.1 * lines.typical_amplitude());
-        self.offsets = (0..lines.len())
+        let mut offsets: Vec<f64> = (0..lines.len())
             .filter(|&n| lines.directions[n] as usize == self.direction && lines.amplitudes[n] >= strong)
             .map(|n| lines.offsets[n])
             .collect();
-        self.offsets.sort_by(f64::total_cmp);
+        offsets.sort_by(f64::total_cmp);
         let near = NEAR.0.max(NEAR.1 * frame.resolution);
         let sides = self.sides_on_legs();
         for &(offset, _) in &sides {
-            let at = self.offsets.partition_point(|&other| other < offset);
-            let others = &self.offsets[at.saturating_sub(1)..self.offsets.len().min(at + 1)];
+            let at = offsets.partition_point(|&other| other < offset);
+            let others = &offsets[at.saturating_sub(1)..offsets.len().min(at + 1)];
             if others.iter().all(|other| (other - offset).abs() > near) {
-                self.offsets.insert(at, offset);
+                offsets.insert(at, offset);
             }
         }
-        let mut covered = vec![Bits::new(self.size[0]); self.offsets.len()];
+        let mut covered = vec![Bits::new(self.size[0]); offsets.len()];
         let mut touched = covered.clone();
-        let lines = OnLine::new(&self.offsets, near);
+        let lines = OnLine::new(&offsets, near);
         let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
         let on_grid = frame.angle_to_grid(self.angle);
         evidence.gradients.iter().for_each(|(pixel, along, magnitude)| {
@@ -229,7 +258,8 @@ impl Turned {
                 }
             }
         }
-        (self.covered, self.touched) = (covered, touched);
+        self.offsets = Arc::new(offsets);
+        (self.covered, self.touched) = (Arc::new(covered), Arc::new(touched));
     }
 
     /// The sides of racks on legs that lie along the direction: where they are across, and from where to where along.
@@ -241,14 +271,14 @@ impl Turned {
     }
 
     /// Keys of the view and of its lines.
-    fn find_keys(&self) -> (Key, Vec<Key>) {
+    fn find_keys(&self) -> (Key, Arc<Vec<Key>>) {
         let pitch = self.pitch.map_or(Key::default(), |pitch| Key::default().number(pitch));
         let numbers = [self.angle, self.cell, self.start[0], self.start[1]];
-        let lines = self.offsets.iter().zip(&self.covered).zip(&self.touched);
+        let lines = self.offsets.iter().zip(self.covered.iter()).zip(self.touched.iter());
         let key = |((offset, covered), touched): ((&f64, &Bits), &Bits)| {
             Key::default().number(*offset).bits(covered).bits(touched)
         };
-        (numbers.into_iter().fold(pitch.with(self.direction as u64), Key::number), lines.map(key).collect())
+        (numbers.into_iter().fold(pitch.with(self.direction as u64), Key::number), Arc::new(lines.map(key).collect()))
     }
 
     /// The key of all that can be seen of a strip, and so far beyond its sides, metres.
