@@ -15,8 +15,17 @@ pub fn map_bands<T: Send>(rows: usize, threads: usize, pass: impl Fn(Range<usize
 
 /// What `make` makes of each of `0..count`, in their order; each is worth a thread's while.
 pub fn map_each<T: Send>(count: usize, threads: usize, make: impl Fn(usize) -> T + Sync) -> Vec<T> {
-    let gather = |made: &mut Vec<(usize, T)>, n: usize| made.push((n, make(n)));
-    let mut made = fold(count, threads, Vec::new, gather, Vec::extend);
+    map_each_in(count, threads, |(), n| make(n))
+}
+
+/// The same in room of each thread's own, which it finds as it left it: what is large is not asked of the system anew.
+pub fn map_each_in<T: Send, R: Default + Send>(
+    count: usize,
+    threads: usize,
+    make: impl Fn(&mut R, usize) -> T + Sync,
+) -> Vec<T> {
+    let gather = |(room, made): &mut (R, Vec<(usize, T)>), n: usize| made.push((n, make(room, n)));
+    let (_, mut made) = fold(count, threads, Default::default, gather, |all, more| all.1.extend(more.1));
     made.sort_unstable_by_key(|(n, _)| *n);
     made.into_iter().map(|(_, t)| t).collect()
 }

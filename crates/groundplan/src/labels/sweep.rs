@@ -4,7 +4,7 @@
 use super::summed::Summed;
 use super::sums::What;
 use super::turned::Turned;
-use crate::bands::fold;
+use crate::bands::map_each_in;
 
 /// So many rows of cells are gone over together.
 const ROWS: f64 = 128.0;
@@ -41,7 +41,7 @@ impl Sweep<'_> {
         } else {
             order.chunks(together).collect()
         };
-        let add = |(room, made): &mut (Summed, Vec<(usize, Vec<T>)>), n: usize| {
+        let made = map_each_in(groups.len(), threads, |room: &mut Summed, n| {
             let group = groups[n];
             let places = || group.iter().map(|&place| self.places[place]);
             let near = is_large.then(|| {
@@ -54,14 +54,9 @@ impl Sweep<'_> {
             for &place in group {
                 find(near.as_ref().unwrap_or(view), place, &mut found);
             }
-            made.push((n, found));
-            if let Some(near) = near {
-                *room = near.into_room();
-            }
-        };
-        let empty = || (Summed::default(), Vec::new());
-        let (_, mut made) = fold(groups.len(), threads, empty, add, |all, more| all.1.extend(more.1));
-        made.sort_unstable_by_key(|(n, _)| *n);
-        made.into_iter().flat_map(|(_, found)| found).collect()
+            *room = near.map(Turned::into_room).unwrap_or_default();
+            found
+        });
+        made.into_iter().flatten().collect()
     }
 }

@@ -3,7 +3,7 @@
 
 use super::raster::Raster;
 use super::runs::{Run, Runs};
-use crate::bands::map_each;
+use crate::bands::{each, map_each};
 use std::ops::Range;
 
 /// Rasters of more pixels than this are looked at piece by piece.
@@ -24,6 +24,11 @@ pub struct Rows {
 }
 
 impl Rows {
+    /// The room of those that lie in one band.
+    pub fn into_room(self) -> Vec<u32> {
+        self.bands.into_iter().next().unwrap_or_default()
+    }
+
     /// One row, from the lowest.
     pub fn row(&self, y: usize) -> &[u32] {
         &self.bands[y / self.band][y % self.band * self.width..][..self.width]
@@ -70,20 +75,26 @@ fn whole(raster: &Raster, threads: usize) -> Rows {
     let above = above(raster, &bands);
     let below = if bands.len() == 1 { vec![vec![0; width]] } else { below(raster, &bands) };
     let made = map_each(bands.len(), threads, |n| {
-        let mut band = heights(raster, &columns, bands[n].clone(), &mut below[n].clone(), &above[n]);
+        let mut band = Vec::with_capacity(bands[n].len() * width);
+        heights(raster, &columns, bands[n].clone(), &mut below[n].clone(), &above[n], &mut band);
         square(&mut band, width);
         band
     });
     Rows { width, height, band, bands: made }
 }
 
-/// Those within some columns and rows of a raster; what is on their border or beyond counts as not free.
-pub fn within(raster: &Raster, [columns, rows]: [Range<usize>; 2]) -> Rows {
+/// Those within some columns and rows of a raster; what is on their border or beyond counts as not free. They take the
+/// room of others.
+pub fn within(raster: &Raster, [columns, rows]: [Range<usize>; 2], mut room: Vec<u32>) -> Rows {
     let (width, height) = (columns.len(), rows.len());
     let border = vec![0; width];
-    let mut inner = heights(raster, &columns, rows.start + 1..rows.end - 1, &mut border.clone(), &border);
-    square(&mut inner, width);
-    Rows { width, height, band: height, bands: vec![[border.clone(), inner, border].concat()] }
+    room.clear();
+    room.reserve_exact(height * width);
+    room.extend_from_slice(&border);
+    heights(raster, &columns, rows.start + 1..rows.end - 1, &mut border.clone(), &border, &mut room);
+    square(&mut room[width..], width);
+    room.extend_from_slice(&border);
+    Rows { width, height, band: height, bands: vec![room] }
 }
 
 /// How far it is to what is not free in the row that follows each band.
@@ -116,15 +127,13 @@ fn band_by_band(raster: &Raster, threads: usize, mut visit: impl FnMut(Range<usi
     let bands: Vec<Range<usize>> = (0..raster.height).step_by(ROWS).map(|y| y..(y + ROWS).min(raster.height)).collect();
     let above = above(raster, &bands);
     let mut below = vec![0; width];
+    let mut rows = Vec::with_capacity(ROWS * width);
     for (band, above) in bands.into_iter().zip(&above) {
-        let heights = heights(raster, &columns, band.clone(), &mut below, above);
-        let parts: Vec<&[u32]> = heights.chunks(ROWS.div_ceil(threads.max(1)) * width).collect();
-        let squared = |n: usize| {
-            let mut part = parts[n].to_vec();
-            square(&mut part, width);
-            part
-        };
-        visit(band, &map_each(parts.len(), threads, squared).concat());
+        rows.clear();
+        heights(raster, &columns, band.clone(), &mut below, above, &mut rows);
+        let parts = rows.chunks_mut(ROWS.div_ceil(threads.max(1)) * width).collect();
+        each(parts, threads, |part| square(part, width));
+        visit(band, &rows);
     }
 }
 
@@ -142,20 +151,26 @@ fn step(raster: &Raster, columns: &Range<usize>, y: usize, row: &mut [u32]) {
 }
 
 /// How far it is to what is not free within each column; `below` says so of the row before and then of the last one,
-/// `above` of the one that follows.
-fn heights(raster: &Raster, columns: &Range<usize>, rows: Range<usize>, below: &mut [u32], above: &[u32]) -> Vec<u32> {
-    let width = columns.len();
-    let mut heights = Vec::with_capacity(rows.len() * width);
+/// `above` of the one that follows. They are put to what is there.
+fn heights(
+    raster: &Raster,
+    columns: &Range<usize>,
+    rows: Range<usize>,
+    below: &mut [u32],
+    above: &[u32],
+    all: &mut Vec<u32>,
+) {
+    let (width, first) = (columns.len(), all.len());
     for y in rows.clone() {
         step(raster, columns, y, below);
-        heights.extend_from_slice(below);
+        all.extend_from_slice(below);
     }
+    let heights = &mut all[first..];
     for n in (0..rows.len()).rev() {
         let (row, next) = heights[n * width..].split_at_mut(width);
         let above = if n + 1 < rows.len() { &next[..width] } else { above };
         row.iter_mut().zip(above).for_each(|(to, above)| *to = (*to).min(*above + 1));
     }
-    heights
 }
 
 /// From the heights of rows to the squared distances.

@@ -5,7 +5,7 @@ use super::blocks::Blocks;
 use super::clearance::{Clearance, Rows, within};
 use super::gaps::Bar;
 use super::raster::Raster;
-use crate::bands::map_each;
+use crate::bands::map_each_in;
 use crate::bits::{WORD, lowest};
 use crate::sets::Sets;
 use std::ops::Range;
@@ -35,16 +35,18 @@ pub fn find(raster: &Raster, clearance: &Clearance, threads: usize, recall: &Rec
     let squares: Vec<[Range<usize>; 2]> =
         parts(raster.height).flat_map(|rows| parts(raster.width).map(move |columns| [columns, rows.clone()])).collect();
     let wider = |range: &Range<usize>, size: usize| range.start.saturating_sub(around)..(range.end + around).min(size);
-    map_each(squares.len(), threads, |n| {
+    map_each_in(squares.len(), threads, |room: &mut Vec<u32>, n| {
         let [columns, rows] = &squares[n];
         let window = [wider(columns, raster.width), wider(rows, raster.height)];
-        let find = || {
+        let mut find = || {
             let (found, corner) = if let Some(pixels) = clearance.whole() {
                 (Window::new(raster, pixels, window.clone()).narrows(), [0; 2])
             } else {
                 let corner = [0, 1].map(|axis| window[axis].start);
-                let pixels = within(raster, window.clone());
-                (Window::new(raster, &pixels, [0..pixels.width, 0..pixels.height]).narrows(), corner)
+                let pixels = within(raster, window.clone(), std::mem::take(room));
+                let found = Window::new(raster, &pixels, [0..pixels.width, 0..pixels.height]).narrows();
+                *room = pixels.into_room();
+                (found, corner)
             };
             let own = found
                 .into_iter()
