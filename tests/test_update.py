@@ -68,6 +68,17 @@ def test_any_patches_give_the_bytes_of_a_full_survey(case: tuple[str, int, list[
         assert survey.to_json() == groundplan.survey(now).to_json()
 
 
+def test_a_map_that_is_looked_at_piece_by_piece_follows_its_patches() -> None:
+    # So many pixels that clearances are not kept, and so tall that views are kept in squares.
+    one = ZOO["two_blocks_of_racks"]()
+    now = groundplan.from_array(np.tile(one, (1 + (1 << 24) // one.size, 1)), RESOLUTION, (-3.0, 1.5, 0.0))
+    survey = groundplan.survey(now, keep=True)
+    for row, changed in ((3000, one[40:140, :80].T.copy()), (9000, np.full((30, 60), OCCUPIED, np.uint8))):
+        survey = survey.update(changed, row, 50)
+        now = with_patch(now, changed, row, 50)
+        assert survey.to_json() == groundplan.survey(now).to_json()
+
+
 @settings(max_examples=20, deadline=None)
 @given(patches())
 def test_a_map_that_changed_in_several_places_is_compared_with_the_one_before(

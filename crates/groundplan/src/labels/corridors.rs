@@ -143,7 +143,7 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
             return Vec::new();
         }
         let family = Family::new(evidence, views, &views[n], &mouths);
-        let whole = family.before_mouths(&mouths, threads);
+        let whole = family.before_mouths(&mouths, threads, evidence.recall);
         let known: Vec<Strip> = strips.iter().filter(|strip| strip.direction == n).cloned().collect();
         family.best(whole, &known)
     });
@@ -255,8 +255,8 @@ impl<'a> Family<'a> {
 
     /// The strips between every two lines that are a corridor's width apart.
     fn candidates(&self, threads: usize, recall: &Recall) -> Vec<Candidate> {
-        self.sweep().find(1, threads, |view, low, found| {
-            let own = self.seen_in(view);
+        let view = self.view;
+        self.sweep().find(1, threads, |near, low, found| {
             for high in low + 1..view.offsets.len() {
                 let across = [view.offsets[low], view.offsets[high]];
                 let width = across[1] - across[0];
@@ -265,45 +265,62 @@ impl<'a> Family<'a> {
                 }
                 if width >= self.parameters.labels_min_width {
                     let sides = [low, high];
-                    let key = || {
-                        let key = view.key(across, BESIDE.1).with(u64::from(self.racked));
-                        self.pitches.iter().copied().fold(key, Key::number)
-                    };
-                    let pieces = recall.strips.or_find(key, || {
-                        let pieces = |open: Range<usize>| {
-                            let columns = own.columns(sides, open.clone());
-                            own.pieces(&columns, open.start, across)
-                        };
-                        own.open(across).into_iter().flat_map(pieces).collect()
-                    });
+                    let pieces = recall.strips.or_find(
+                        || self.key(across),
+                        || {
+                            let own = self.seen_in(near.view());
+                            let pieces = |open: Range<usize>| {
+                                let columns = own.columns(sides, open.clone());
+                                own.pieces(&columns, open.start, across)
+                            };
+                            own.open(across).into_iter().flat_map(pieces).collect()
+                        },
+                    );
                     found.extend(pieces.iter().map(|(strip, whole)| Candidate::new(view, sides, strip, *whole)));
                 }
             }
         })
     }
 
+    /// The key of all that strips between two lines are found from.
+    fn key(&self, across: [f64; 2]) -> Key {
+        let key = self.view.key(across, BESIDE.1).with(u64::from(self.racked));
+        self.pitches.iter().copied().fold(key, Key::number)
+    }
+
     /// The corridors into which others open side by side.
-    fn before_mouths(&self, mouths: &[Vec<Range<usize>>], threads: usize) -> Vec<Candidate> {
-        self.sweep().find(1, threads, |view, low, found| {
-            let own = self.seen_in(view);
+    fn before_mouths(&self, mouths: &[Vec<Range<usize>>], threads: usize, recall: &Recall) -> Vec<Candidate> {
+        let view = self.view;
+        self.sweep().find(1, threads, |near, low, found| {
             for high in low + 1..view.offsets.len() {
                 let (across, sides) = ([view.offsets[low], view.offsets[high]], [low, high]);
                 let width = across[1] - across[0];
                 if width > self.parameters.labels_max_width {
                     break;
                 }
-                let led_to = |strip: &Strip| sides.iter().any(|&side| own.is_led_to(strip, side, &mouths[side]));
+                let led_to = |strip: &Strip| sides.iter().any(|&side| self.is_led_to(strip, side, &mouths[side]));
                 let may_be = |columns: &Range<usize>| {
-                    sides.iter().any(|&side| own.opening(&mouths[side], width, columns).count() >= LEAST_MOUTHS)
+                    sides.iter().any(|&side| self.opening(&mouths[side], width, columns).count() >= LEAST_MOUTHS)
                 };
                 if width < self.parameters.labels_min_width || !may_be(&(0..view.size[0])) {
                     continue;
                 }
-                for open in own.open(across).into_iter().filter(may_be) {
-                    let columns = own.columns(sides, open.clone());
-                    let strips = own.strips(&columns, open.start, across);
-                    found.extend(strips.iter().filter(|s| led_to(s)).map(|s| Candidate::new(view, sides, s, true)));
-                }
+                let key = || {
+                    let mouths = sides.map(|side| &mouths[side]);
+                    let key = self.key(across).with(mouths[0].len() as u64).with(mouths[1].len() as u64);
+                    let ends = mouths.into_iter().flatten().flat_map(|mouth| [mouth.start, mouth.end]);
+                    ends.fold(key, |key, end| key.with(end as u64))
+                };
+                let strips = recall.strips.or_find(key, || {
+                    let own = self.seen_in(near.view());
+                    let strips = |open: Range<usize>| {
+                        let columns = own.columns(sides, open.clone());
+                        own.strips(&columns, open.start, across)
+                    };
+                    let open = own.open(across).into_iter().filter(may_be);
+                    open.flat_map(strips).filter(led_to).map(|strip| (strip, true)).collect()
+                });
+                found.extend(strips.iter().map(|(strip, whole)| Candidate::new(view, sides, strip, *whole)));
             }
         })
     }

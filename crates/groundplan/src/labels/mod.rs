@@ -20,6 +20,7 @@ mod near;
 mod on_line;
 mod outline;
 mod paper;
+mod patches;
 mod patterns;
 mod period;
 mod pillars;
@@ -238,7 +239,10 @@ pub(crate) struct Ground<'scope, 'a> {
 impl<'scope, 'a: 'scope> Ground<'scope, 'a> {
     /// Begins to look at a map.
     pub fn start(side: Side<'scope, '_>, grid: &'scope Grid<'a>, threads: usize, recall: &'scope Recall) -> Self {
-        let look = side.start(move || Look::new(grid, &Tiles::new(grid, threads)));
+        let look = side.start(move || {
+            let look = Look::new(grid, &Tiles::new(grid, threads));
+            if recall.keeps() { look.with_keys(threads) } else { look }
+        });
         Self { look, space: side.start(move || Space::new(grid, threads, recall)) }
     }
 }

@@ -106,10 +106,10 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     let depth_of_all = depth([0.0, widest]);
     let around = [depth_of_all, widest + depth_of_all];
     let sweep = Sweep { view, places: &lows, around, what: &[What::Blocked, What::Occupied] };
-    let mut candidates = sweep.find(TOGETHER, threads, |view, n, found| {
+    let mut candidates = sweep.find(TOGETHER, threads, |near, n, found| {
         let (across, deep) = tried[n];
         let key = || view.key(across, depth(across)).number(bay).with(u64::from(deep.is_some()));
-        let ways = evidence.recall.ragged.or_find(key, || Candidate::new(view, across, bay).ways(deep));
+        let ways = evidence.recall.ragged.or_find(key, || Candidate::new(near.view(), across, bay).ways(deep));
         found.extend(ways.into_iter().map(|(way, by)| Short::new(view, n, &way, by)));
     });
     candidates.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.tried.cmp(&b.tried)));

@@ -5,7 +5,9 @@
 
 use super::corridors::Strip;
 use super::ragged::Held;
-use super::rooms::Bar;
+use super::rooms::{Bar, Width};
+use super::squares::Band;
+use super::sums::Told;
 use crate::bits::Bits;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -43,6 +45,9 @@ impl Key {
     }
 }
 
+/// Rows of a view, and what is told of each.
+type SeenRows = (Arc<Band>, Vec<Told>);
+
 /// What was found, by what it was found from.
 type Known<T> = Arc<BTreeMap<Key, T>>;
 
@@ -53,6 +58,10 @@ pub struct Memory {
     strips: Known<Vec<(Strip, bool)>>,
     ragged: Known<Vec<(Strip, Held)>>,
     narrows: Known<Vec<Bar>>,
+    /// Of runs of the free space along rows.
+    widths: Known<Vec<Width>>,
+    /// Rows of views.
+    views: Known<SeenRows>,
 }
 
 /// What is known from before, and what is kept for later.
@@ -61,6 +70,8 @@ pub struct Recall {
     pub(super) strips: Found<Vec<(Strip, bool)>>,
     pub(super) ragged: Found<Vec<(Strip, Held)>>,
     pub(super) narrows: Found<Vec<Bar>>,
+    pub(super) widths: Found<Vec<Width>>,
+    pub(super) views: Found<SeenRows>,
 }
 
 impl Recall {
@@ -71,6 +82,8 @@ impl Recall {
             strips: Found::new(known.strips),
             ragged: Found::new(known.ragged),
             narrows: Found::new(known.narrows),
+            widths: Found::new(known.widths),
+            views: Found::new(known.views),
         })
     }
 
@@ -83,7 +96,13 @@ impl Recall {
     /// What was found this time, and nothing else.
     #[must_use]
     pub fn memory(self) -> Memory {
-        Memory { strips: self.strips.known(), ragged: self.ragged.known(), narrows: self.narrows.known() }
+        Memory {
+            strips: self.strips.known(),
+            ragged: self.ragged.known(),
+            narrows: self.narrows.known(),
+            widths: self.widths.known(),
+            views: self.views.known(),
+        }
     }
 }
 

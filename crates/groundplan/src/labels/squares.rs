@@ -4,6 +4,7 @@ use super::summed::Summed;
 use super::sums::{What, barred};
 use std::cell::Cell;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Cells along the side of a square.
 const SIDE: usize = 8;
@@ -14,6 +15,7 @@ const LOW: u64 = 0x0f0f_0f0f_0f0f_0f0f;
 const ALIKE: u32 = 1 << 31;
 
 /// A row of squares after another.
+#[derive(Debug)]
 pub struct Band {
     /// For each square its byte if it is all alike, or its place in the list.
     places: Vec<u32>,
@@ -22,6 +24,7 @@ pub struct Band {
 
 /// Rows of cells, a byte for each column with its blocked samples in the low half and its occupied ones in the high
 /// half; and a byte for each row with a bit for each column that is barred.
+#[derive(Debug)]
 struct Square {
     cells: [u64; SIDE],
     barred: [u8; SIDE],
@@ -63,7 +66,7 @@ pub struct SquaredRows<'a> {
 
 impl<'a> SquaredRows<'a> {
     /// The rows from one to before another of bands of a view so many cells wide.
-    pub fn new(bands: &'a [Band], width: usize, what: What, from: usize, to: usize) -> Self {
+    pub fn new(bands: &'a [Arc<Band>], width: usize, what: What, from: usize, to: usize) -> Self {
         let across = width.div_ceil(SIDE);
         let layer = |n: usize| {
             let band = &bands[n / BAND];
@@ -114,7 +117,7 @@ impl<'a> SquaredRows<'a> {
 }
 
 /// The sums of some rows of bands of a view so many cells wide, of what is asked; they take the room of others.
-pub fn sums(bands: &[Band], width: usize, what: &[What], rows: Range<usize>, room: Summed) -> Summed {
+pub fn sums(bands: &[Arc<Band>], width: usize, what: &[What], rows: Range<usize>, room: Summed) -> Summed {
     let across = width.div_ceil(SIDE);
     let width = across * SIDE;
     Summed::of_rows(width, rows.clone(), what, room, |what, sums| {

@@ -4,7 +4,7 @@
 //! A view of few cells keeps its sums from the first row on. One of many keeps squares of cells, and where it is gone over
 //! from row to row the sums of some rows for as long as they are asked.
 
-use super::recall::Key;
+use super::recall::{Key, Recall};
 use super::squares::{self, Band, SquaredRows};
 use super::summed::{Part, Summed, SummedRows};
 use crate::bands::map_bands;
@@ -33,13 +33,13 @@ pub enum Cells {
     /// Bands of rows of squares, and the sums of some rows.
     Squared {
         width: usize,
-        bands: Arc<Vec<Band>>,
+        bands: Arc<Vec<Arc<Band>>>,
         near: Summed,
     },
 }
 
 /// A row of cells as a whole; it has a key where keys are asked for.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Told {
     pub key: Key,
     /// Occupied samples.
@@ -61,23 +61,41 @@ impl Default for Cells {
     }
 }
 
+/// What cells are made from.
+pub struct Source<M, K> {
+    /// Makes the cells of a row, a byte each, from some column on.
+    pub make: M,
+    /// The key of all that the cells of some rows are made from.
+    pub key: K,
+}
+
 impl Cells {
-    /// From what makes the cells of any row, a byte each, from some column on: of a view of so many cells along and
-    /// across, with so many samples to a cell, in a part of which something was seen; and what is told of each row.
-    pub fn new(
+    /// From what makes the cells of any row: of a view of so many cells along and across, with so many samples to a cell,
+    /// in a part of which something was seen; and what is told of each row.
+    pub fn new<M, K>(
         [width, height]: [usize; 2],
         samples: u16,
         seen: Part,
-        keyed: bool,
+        Source { make, key }: Source<M, K>,
+        recall: &Recall,
         threads: usize,
-        make: impl Fn(usize, usize, &mut [u8]) + Sync,
-    ) -> (Self, Vec<Told>) {
+    ) -> (Self, Vec<Told>)
+    where
+        M: Fn(usize, usize, &mut [u8]) + Sync,
+        K: Fn(Range<usize>) -> Key + Sync,
+    {
+        let keyed = recall.keeps();
         if width * height > MANY || height > usize::from(u16::MAX) / SAMPLES {
             let made = map_bands(height, threads, |band| {
-                let mut cells = vec![0u8; band.len() * width];
-                cells.chunks_mut(width).zip(band).for_each(|(row, n)| make(n, 0, row));
-                let told: Vec<Told> = cells.chunks(width).map(|row| Told::new(row, keyed)).collect();
-                (Band::new(width, &cells), told)
+                recall.views.or_find(
+                    || key(band.clone()),
+                    || {
+                        let mut cells = vec![0u8; band.len() * width];
+                        cells.chunks_mut(width).zip(band.clone()).for_each(|(row, n)| make(n, 0, row));
+                        let told: Vec<Told> = cells.chunks(width).map(|row| Told::new(row, keyed)).collect();
+                        (Arc::new(Band::new(width, &cells)), told)
+                    },
+                )
             });
             let (bands, told): (_, Vec<_>) = made.into_iter().unzip();
             return (Self::Squared { width, bands: Arc::new(bands), near: Summed::default() }, told.concat());
@@ -199,7 +217,8 @@ mod tests {
             }
         };
         let part = Part { columns: 0..width, rows: 0..height };
-        let (squared, _) = Cells::new([width, height], 4, part, false, 1, make);
+        let (squared, _) =
+            Cells::new([width, height], 4, part, Source { make, key: |_| Key::default() }, &Recall::default(), 1);
         let asked = [What::Blocked, What::Barred];
         let mut room = Summed::default();
         for rows in [0..130, 61..333, 7170..7300, 505..506] {

@@ -5,6 +5,7 @@ use super::summed::Summed;
 use super::sums::What;
 use super::turned::Turned;
 use crate::bands::map_each_in;
+use std::cell::{Cell, OnceCell};
 
 /// So many rows of cells are gone over together.
 const ROWS: f64 = 128.0;
@@ -23,13 +24,13 @@ pub struct Sweep<'a> {
 
 impl Sweep<'_> {
     /// What is found at the places of one group after another. On a small view a group is so many places in their order,
-    /// on a large one those that lie in the same rows. `find` is given the view, the number of a place, and where to put
-    /// what it finds.
+    /// on a large one those that lie in the same rows. `find` is given what lies near the places of the group, the number
+    /// of a place, and where to put what it finds.
     pub fn find<T: Send>(
         &self,
         together: usize,
         threads: usize,
-        find: impl Fn(&Turned, usize, &mut Vec<T>) + Sync,
+        find: impl Fn(&Near, usize, &mut Vec<T>) + Sync,
     ) -> Vec<T> {
         let view = self.view;
         let rows = |place: usize| ((self.places[place] - view.start[1]) / (ROWS * view.cell)).floor() as i64;
@@ -42,21 +43,42 @@ impl Sweep<'_> {
             order.chunks(together).collect()
         };
         let made = map_each_in(groups.len(), threads, |room: &mut Summed, n| {
-            let group = groups[n];
-            let places = || group.iter().map(|&place| self.places[place]);
-            let near = is_large.then(|| {
+            let places = || groups[n].iter().map(|&place| self.places[place]);
+            let ends = is_large.then(|| {
                 let low = places().fold(f64::INFINITY, f64::min) - self.around[0];
-                let high = places().fold(f64::NEG_INFINITY, f64::max) + self.around[1];
-                view.near(self.what, low, high, std::mem::take(room))
+                [low, places().fold(f64::NEG_INFINITY, f64::max) + self.around[1]]
             });
-            let near = near.flatten();
+            let near = Near { sweep: self, ends, room: Cell::new(std::mem::take(room)), laid_out: OnceCell::new() };
             let mut found = Vec::new();
-            for &place in group {
-                find(near.as_ref().unwrap_or(view), place, &mut found);
+            for &place in groups[n] {
+                find(&near, place, &mut found);
             }
-            *room = near.map(Turned::into_room).unwrap_or_default();
+            *room = near.into_room();
             found
         });
         made.into_iter().flatten().collect()
+    }
+}
+
+/// What lies near the places of a group.
+pub struct Near<'a> {
+    sweep: &'a Sweep<'a>,
+    /// Of a large view from where to where across.
+    ends: Option<[f64; 2]>,
+    room: Cell<Summed>,
+    laid_out: OnceCell<Option<Turned>>,
+}
+
+impl Near<'_> {
+    /// The view; of a large one the rows near by are laid out when it is first asked for, as all that is found there may
+    /// be known from before.
+    pub fn view(&self) -> &Turned {
+        let view = self.sweep.view;
+        let lay_out = |[low, high]: [f64; 2]| view.near(self.sweep.what, low, high, self.room.take());
+        self.laid_out.get_or_init(|| self.ends.and_then(lay_out)).as_ref().unwrap_or(view)
+    }
+
+    fn into_room(self) -> Summed {
+        self.laid_out.into_inner().flatten().map_or(self.room.into_inner(), Turned::into_room)
     }
 }

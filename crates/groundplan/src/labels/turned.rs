@@ -7,7 +7,7 @@ use super::on_line::OnLine;
 use super::racks::Row;
 use super::recall::Key;
 use super::summed::{Part, Summed};
-use super::sums::{Cells, Rows, Told, What};
+use super::sums::{Cells, Rows, Source, Told, What};
 use crate::bits::Bits;
 use crate::radiograms::weight;
 use std::ops::Range;
@@ -164,12 +164,23 @@ impl Turned {
         let (origin, along, across) = (at(0.0, 0.0), at(sample, 0.0), at(0.0, sample));
         let steps = [along, across].map(|p| [0, 1].map(|axis| p[axis] - origin[axis]));
         let place = |b: f64| [0, 1].map(|axis| origin[axis] + 0.5 * steps[0][axis] + b * steps[1][axis]);
-        let (seen, keyed) = (self.seen(evidence, look), evidence.recall.keeps());
-        Cells::new(self.size, self.samples.pow(2) as u16, seen, keyed, evidence.threads, |n, first, row| {
-            let lanes: [[f64; 2]; LANES] = std::array::from_fn(|j| place((n * samples + j) as f64 + 0.5));
+        let lane = |n: usize| place(n as f64 + 0.5);
+        let make = |n: usize, first: usize, row: &mut [u8]| {
+            let lanes: [[f64; 2]; LANES] = std::array::from_fn(|j| lane(n * samples + j));
             look.cells(&lanes[..samples], steps[0], first, row);
             self.take(n, first, row);
-        })
+        };
+        let key = |rows: Range<usize>| {
+            let lanes = [lane(rows.start * samples), lane(rows.end * samples - 1)];
+            let key = look.key(lanes, steps[0], self.size[0] * samples).with(rows.len() as u64).with(samples as u64);
+            let [low, high] = [rows.start, rows.end].map(|n| self.start[1] + n as f64 * self.cell);
+            let lies_there = |corners: &&Vec<[f64; 2]>| {
+                corners.iter().any(|corner| corner[1] >= low) && corners.iter().any(|corner| corner[1] <= high)
+            };
+            self.on_legs.iter().filter(lies_there).flatten().flatten().copied().fold(key, Key::number)
+        };
+        let (seen, recall) = (self.seen(evidence, look), evidence.recall);
+        Cells::new(self.size, self.samples.pow(2) as u16, seen, Source { make, key }, recall, evidence.threads)
     }
 
     /// The part of the view in which something was seen of the map, and a few cells more.

@@ -1,9 +1,11 @@
 //! How far every pixel of the free space is from the nearest that is not free, squared, in pixels (Meijster, Roerdink
 //! and Hesselink 2000).
 
+use super::super::recall::{Key, Recall};
 use super::raster::Raster;
 use super::runs::{Run, Runs};
 use crate::bands::{each, map_each};
+use crate::bits::{WORD, lowest};
 use std::ops::Range;
 
 /// Rasters of more pixels than this are looked at piece by piece.
@@ -45,25 +47,60 @@ impl Clearance {
         self.0.as_ref()
     }
 
-    /// Calls `visit` with each run and the clearances of its pixels.
-    pub fn over(&self, raster: &Raster, runs: &Runs, threads: usize, mut visit: impl FnMut(usize, &[u32])) {
+    /// Calls `visit` with the number of each run and how wide the free space is along it.
+    pub fn along(
+        &self,
+        raster: &Raster,
+        runs: &Runs,
+        threads: usize,
+        recall: &Recall,
+        mut visit: impl FnMut(usize, Width),
+    ) {
         let width = raster.width;
         if let Some(rows) = &self.0 {
             for (n, run) in runs.all.iter().enumerate() {
                 let start = run.pixels().start;
-                visit(n, &rows.row(start / width)[start % width..][..run.len()]);
+                visit(n, Width::new(&rows.row(start / width)[start % width..][..run.len()]));
             }
             return;
         }
         let mut next = 0;
-        band_by_band(raster, threads, |rows, part| {
-            let (start, end) = (rows.start * width, rows.end * width);
-            while let Some(pixels) = runs.all.get(next).map(Run::pixels).filter(|pixels| pixels.start < end) {
-                visit(next, &part[pixels.start - start..pixels.end - start]);
+        band_by_band(raster, &runs.all, threads, recall, |widths| {
+            for width in widths {
+                visit(next, width);
                 next += 1;
             }
         });
     }
+}
+
+/// How wide the free space is along a run of its pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Width {
+    /// The greatest squared clearance, in pixels, and the first pixel of the run that has it.
+    pub most: u32,
+    pub at: u32,
+    /// Sum of all pixels' clearances.
+    pub sum: f64,
+}
+
+impl Width {
+    fn new(squared: &[u32]) -> Self {
+        let most = squared.iter().copied().max().unwrap_or(0);
+        let at = squared.iter().position(|&squared| squared == most).unwrap_or(0) as u32;
+        Self { most, at, sum: distances(squared) }
+    }
+}
+
+/// The sum of the roots, several side by side.
+fn distances(squared: &[u32]) -> f64 {
+    let parts = squared.chunks_exact(4);
+    let rest: f64 = parts.remainder().iter().map(|&squared| f64::from(squared).sqrt()).sum();
+    let add = |mut sums: [f64; 4], part: &[u32]| {
+        sums.iter_mut().zip(part).for_each(|(sum, &squared)| *sum += f64::from(squared as i32).sqrt());
+        sums
+    };
+    parts.fold([0.0; 4], add).iter().sum::<f64>() + rest
 }
 
 /// Those of a whole raster, whose border is not free.
@@ -121,19 +158,41 @@ fn below(raster: &Raster, bands: &[Range<usize>]) -> Vec<Vec<u32>> {
     bands.iter().map(before).collect()
 }
 
-/// Calls `visit` with some rows after another and their clearances.
-fn band_by_band(raster: &Raster, threads: usize, mut visit: impl FnMut(Range<usize>, &[u32])) {
+/// Calls `visit` with what is told of the runs of some rows, and then of the rows that follow.
+fn band_by_band(raster: &Raster, runs: &[Run], threads: usize, recall: &Recall, mut visit: impl FnMut(Vec<Width>)) {
     let (width, columns) = (raster.width, 0..raster.width);
     let bands: Vec<Range<usize>> = (0..raster.height).step_by(ROWS).map(|y| y..(y + ROWS).min(raster.height)).collect();
     let above = above(raster, &bands);
     let mut below = vec![0; width];
-    let mut rows = Vec::with_capacity(ROWS * width);
+    let mut squared = Vec::with_capacity(ROWS * width);
+    let mut rest = runs;
     for (band, above) in bands.into_iter().zip(&above) {
-        rows.clear();
-        heights(raster, &columns, band.clone(), &mut below, above, &mut rows);
-        let parts = rows.chunks_mut(ROWS.div_ceil(threads.max(1)) * width).collect();
-        each(parts, threads, |part| square(part, width));
-        visit(band, &rows);
+        let pixels = band.start * width..band.end * width;
+        let (own, others) = rest.split_at(rest.partition_point(|run| run.pixels().start < pixels.end));
+        rest = others;
+        let mut after = None;
+        // What is free in the rows and how far it is beyond them, and the runs.
+        let key = || {
+            let free = pixels.clone().step_by(WORD).map(|n| raster.free.word(n) & lowest(pixels.end - n));
+            let beyond = below.iter().zip(above).map(|(below, above)| u64::from(*below) << 32 | u64::from(*above));
+            let runs = own.iter().map(|run| ((run.pixels().start - pixels.start) << 32 | run.len()) as u64);
+            free.chain(beyond).chain(runs).fold(Key::default().with(width as u64), Key::with)
+        };
+        let widths = recall.widths.or_find(key, || {
+            squared.clear();
+            let mut below = below.clone();
+            heights(raster, &columns, band.clone(), &mut below, above, &mut squared);
+            let parts = squared.chunks_mut(ROWS.div_ceil(threads.max(1)) * width).collect();
+            each(parts, threads, |part| square(part, width));
+            after = Some(below);
+            let of = |run: &Run| Width::new(&squared[run.pixels().start - pixels.start..][..run.len()]);
+            own.iter().map(of).collect()
+        });
+        match after {
+            Some(after) => below = after,
+            None => band.for_each(|y| step(raster, &columns, y, &mut below)),
+        }
+        visit(widths);
     }
 }
 

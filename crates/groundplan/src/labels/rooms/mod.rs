@@ -26,6 +26,7 @@ use crate::grid::{Grid, State, tidy};
 use crate::subdivision::distance;
 use cells::Rules;
 use clearance::Clearance;
+pub use clearance::Width;
 pub use corridors::Corridor;
 use fill::fill_runs;
 use fine::Fine;
@@ -86,20 +87,19 @@ struct Piece {
 }
 
 impl Piece {
-    /// And a run more, with its squared distances.
-    fn add(&mut self, run: &Run, seen: usize, squared: &[u32]) {
-        let top = squared.iter().copied().max().unwrap_or(0);
+    /// And a run more.
+    fn add(&mut self, run: &Run, seen: usize, width: Width) {
         if self.pixels == 0 {
             self.first = run.pixels().start;
         }
-        if self.pixels == 0 || top > self.widest {
-            self.widest = top;
-            self.at = run.pixels().start + squared.iter().position(|&squared| squared == top).unwrap_or(0);
+        if self.pixels == 0 || width.most > self.widest {
+            self.widest = width.most;
+            self.at = run.pixels().start + width.at as usize;
         }
         self.region = run.number;
         self.pixels += run.len();
         self.seen += seen;
-        self.distances += distances(squared);
+        self.distances += width.sum;
     }
 }
 
@@ -272,9 +272,9 @@ fn regions(
 ) -> (Vec<Region>, Runs) {
     let (pieces, count) = numbers.pieces();
     let mut all = vec![Piece::default(); count + 1];
-    clearance.over(raster, &numbers, evidence.threads, |n, own| {
+    clearance.along(raster, &numbers, evidence.threads, evidence.recall, |n, width| {
         let seen = numbers.all[n].len() - raster.islands.filled.within(&numbers.all[n]);
-        all[pieces[n] as usize].add(&numbers.all[n], seen, own);
+        all[pieces[n] as usize].add(&numbers.all[n], seen, width);
     });
     let mut largest = BTreeMap::new();
     for (n, piece) in all.iter().enumerate().skip(1) {
@@ -335,17 +335,6 @@ fn regions(
         region.place = middle(evidence, raster, &pixels, squares);
     }
     (regions, numbers)
-}
-
-/// The sum of the roots, several side by side.
-fn distances(squared: &[u32]) -> f64 {
-    let parts = squared.chunks_exact(4);
-    let rest: f64 = parts.remainder().iter().map(|&squared| f64::from(squared).sqrt()).sum();
-    let add = |mut sums: [f64; 4], part: &[u32]| {
-        sums.iter_mut().zip(part).for_each(|(sum, &squared)| *sum += f64::from(squared as i32).sqrt());
-        sums
-    };
-    parts.fold([0.0; 4], add).iter().sum::<f64>() + rest
 }
 
 /// Of the pixels of each number so many at most, evenly spaced; `number` is that of each run, `counts` says how many

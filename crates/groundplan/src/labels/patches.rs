@@ -1,0 +1,104 @@
+//! The map in patches of 64 x 64 pixels that have keys: what is seen over patches that are the same as before is the same.
+
+use super::recall::Key;
+use crate::bands::{BAND_ROWS, map_bands};
+
+/// Pixels along the side of a patch.
+const SIDE: usize = BAND_ROWS;
+/// What lies so many pixels beside the lanes is under them too: more than is rounded.
+const BESIDE: f64 = 2.0;
+
+/// Keys of patches, row after row.
+pub struct Patches {
+    /// Patches along each axis.
+    size: [usize; 2],
+    keys: Vec<Key>,
+}
+
+impl Patches {
+    /// From the rows of a map, of which each pixel's value has a meaning.
+    pub fn new(rows: &[&[u8]], meanings: &[u8; 256], threads: usize) -> Self {
+        let across = rows.first().map_or(0, |row| row.len().div_ceil(SIDE));
+        let keys = map_bands(rows.len(), threads, |band| {
+            let mut keys = vec![Key::default().bytes(meanings); across];
+            for row in &rows[band] {
+                keys.iter_mut().zip(row.chunks(SIDE)).for_each(|(key, pixels)| *key = key.bytes(pixels));
+            }
+            keys
+        });
+        Self { size: [across, keys.len()], keys: keys.concat() }
+    }
+
+    /// The key of all that so many samples of lanes side by side lie on, each a `step` after the one before: of the first
+    /// lane and the last one it is said where they begin, in pixels.
+    pub fn under(&self, lanes: [[f64; 2]; 2], step: [f64; 2], count: usize) -> Key {
+        let numbers = lanes.into_iter().chain([step]).flatten();
+        let key = numbers.fold(Key::default().with(count as u64), Key::number);
+        // Along the axis that the lanes are nearer to, patch after patch, and from lane to lane across it.
+        let along = usize::from(step[1].abs() > step[0].abs());
+        let across = 1 - along;
+        let slope = if step[along] == 0.0 { 0.0 } else { step[across] / step[along] };
+        let ends = lanes.map(|lane| [lane[along], lane[along] + count as f64 * step[along]]);
+        let part = |ends: &[f64], axis: usize| {
+            let low = ends.iter().copied().fold(f64::INFINITY, f64::min) - BESIDE;
+            let high = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max) + BESIDE;
+            let place = |pixel: f64| ((pixel / SIDE as f64).floor() + 1.0).max(0.0) as usize;
+            // Beyond the map there are no patches.
+            place(low).saturating_sub(1)..place(high).min(self.size[axis])
+        };
+        part(ends.as_flattened(), along).fold(key, |key, n| {
+            let borders = [n, n + 1].map(|n| (n * SIDE) as f64);
+            let at = |lane: [f64; 2]| borders.map(|border| lane[across] + (border - lane[along]) * slope);
+            part(lanes.map(at).as_flattened(), across).fold(key, |key, m| {
+                let [x, y] = if along == 0 { [n, m] } else { [m, n] };
+                key.key(self.keys[y * self.size[0] + x])
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{Frame, Grid, Table};
+    use crate::labels::look::Look;
+    use crate::tiles::Tiles;
+
+    #[test]
+    fn lanes_that_see_a_changed_pixel_have_another_key() {
+        let (width, height) = (300, 200);
+        let (table, frame) = (Table::trinary(), Frame::new(width, height, 0.05, [0.0; 3]));
+        let meanings: [u8; 256] = std::array::from_fn(|n| n as u8);
+        let of = |pixels: &[u8], start: [f64; 2], step: [f64; 2]| {
+            let grid = Grid::new(pixels, true, &table, frame);
+            let rows: Vec<&[u8]> = (0..height).map(|y| grid.row(y)).collect();
+            let lanes = [start, [start[0] - 9.0 * step[1], start[1] + 9.0 * step[0]]];
+            let look = Look::new(&grid, &Tiles::new(&grid, 1));
+            let seen: [_; 10] = std::array::from_fn(|n| {
+                let n = n as f64;
+                let mut cells = vec![0; 400];
+                look.along([start[0] - n * step[1], start[1] + n * step[0]], step, &mut cells);
+                cells
+            });
+            (Patches::new(&rows, &meanings, 1).under(lanes, step, 400), seen)
+        };
+        let mut state = 1u64;
+        let mut random = |most: f64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 * most
+        };
+        let (mut others, mut same) = (0, 0);
+        for _ in 0..2000 {
+            let angle = random(7.0);
+            let (start, step) = ([random(360.0) - 30.0, random(260.0) - 30.0], [libm::cos(angle), libm::sin(angle)]);
+            let mut pixels = vec![254; width * height];
+            let (key, seen) = of(&pixels, start, step);
+            pixels[random(height as f64) as usize * width + random(width as f64) as usize] = 0;
+            let (other, now) = of(&pixels, start, step);
+            assert!(seen == now || key != other);
+            others += usize::from(seen != now);
+            same += usize::from(key == other);
+        }
+        assert!(others > 20 && same > 1000);
+    }
+}
