@@ -142,14 +142,14 @@ def docks() -> npt.NDArray[np.uint8]:
     return picture
 
 
-def open_end(cross: int) -> npt.NDArray[np.uint8]:
-    """A hall of three aisles of 9 m by 2.5 m between rows of racks, which open into a way so many pixels wide."""
-    picture = np.full((270, 220 + cross), 205, np.uint8)
-    picture[18:252, 18 : 202 + cross] = 0
-    picture[20:250, 20 : 200 + cross] = 254
+def open_end(cross: int, length: int = 180) -> npt.NDArray[np.uint8]:
+    """A hall of three aisles of 2.5 m between rows of racks, which open into a way so many pixels wide."""
+    picture = np.full((270, 40 + length + cross), 205, np.uint8)
+    picture[18:252, 18 : 22 + length + cross] = 0
+    picture[20:250, 20 : 20 + length + cross] = 254
     for row in (70, 160):
-        picture[row : row + 40, 20:200] = 0
-        picture[row + 2 : row + 38, 22:198] = 205
+        picture[row : row + 40, 20 : 20 + length] = 0
+        picture[row + 2 : row + 38, 22 : 18 + length] = 205
     return picture
 
 
@@ -227,9 +227,12 @@ def test_no_aisle_leads_along_docks_through_the_walls_between_them() -> None:
     assert not any(shapely.Polygon(aisle["polygon"]).intersects(wall) for aisle in aisles for wall in walls)
 
 
+@pytest.mark.parametrize("length", [120, 180])
 @pytest.mark.parametrize("cross", [60, 80, 100, 120])
-def test_aisles_side_by_side_tell_the_way_that_they_open_into_be_it_half_as_wide_as_the_hall(cross: int) -> None:
-    survey = groundplan.survey(open_end(cross), resolution=RESOLUTION)
+def test_aisles_side_by_side_tell_the_way_that_they_open_into_be_it_as_wide_as_they_are_long(
+    cross: int, length: int
+) -> None:
+    survey = groundplan.survey(open_end(cross, length), resolution=RESOLUTION)
     widths = sorted(label["width"] for label in survey.of_kind("corridor"))
     assert widths == pytest.approx([2.5, 2.5, 2.5, cross * RESOLUTION], abs=0.15)
     crossings = [junction["type"] for junction in survey.of_kind("junction")]

@@ -6,8 +6,10 @@ use super::beside::{Beside, placed, wider};
 use super::corridors::{Strip, UNTOLD};
 use super::look::Look;
 use super::racks::{self, Row};
-use super::sections::{Columns, Free};
+use super::sections::{Columns, Free, WIDTH};
+use super::through::{Seen, Through};
 use super::turned::Turned;
+use super::widths::Widths;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
 const IN_LINE: (f64, f64) = (0.7, 0.5);
@@ -19,42 +21,73 @@ const EXPECTED: (f64, f64) = (0.05, 0.005);
 /// Where posts recur along the rows, what crosses them is no more than so many times as long as the shorter of the two
 /// corridors beside a row: short ones between the goods of racks do not make bays of the aisles.
 const LONGER: f64 = 4.0;
-/// Cross aisles of a place are of one width but for this share.
-const ALIKE: f64 = 0.15;
 /// What goes on so far beyond the rows, metres, is a way there.
 const BEYOND: f64 = 2.0;
 
 /// The ways through the rows between corridors, as strips of the direction that crosses them.
 pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], rows: &[Row]) -> Vec<Strip> {
     let (mut gates, mut doubtful) = (Vec::new(), Vec::new());
-    for row in rows {
+    let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, row)).collect();
+    let mut seen = Vec::new();
+    for (row, reaching) in rows.iter().zip(&reaching) {
         let (Some(between), Some(other)) = (row.between, crossing(views, row.direction)) else { continue };
         let view = &views[row.direction];
         let middles = between.map(|n| strips[n].middle());
-        let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, view.pitch);
-        for way in columns.ways() {
+        let columns = Columns::new(look, &evidence.grid.frame, [view, other], reaching, view.pitch);
+        let is_within = |way: &[f64; 2]| row.along[0] < way[0] && way[1] < row.along[1];
+        for way in columns.ways().into_iter().filter(is_within) {
             let found = if columns.is_as_bays(way) { &mut doubtful } else { &mut gates };
             found.push(strip(view, other, row, way, middles));
         }
+        let beside = between.map(|n| strips[n].width()).into_iter().fold(0.0, f64::max);
+        seen.push(Seen { own: row.along, row: reaching, columns, views: [view, other], between, middles, beside });
     }
+    let mut sure = Widths::of(views, strips.iter().filter(|strip| !strip.bays).chain(&gates));
+    let through = Through::new(seen, views.len()).find(&mut sure);
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
-    let mut sure: Vec<Vec<f64>> = vec![Vec::new(); views.len()];
-    for strip in strips.iter().filter(|strip| !strip.bays).chain(&gates) {
-        sure[strip.direction].push(strip.width());
-    }
-    for widths in &mut sure {
-        widths.sort_by(f64::total_cmp);
-    }
-    let is_told = |gate: &Strip| {
-        let (widths, width) = (&sure[gate.direction], gate.width());
-        // The nearest is beside where its own would be.
-        let next = widths.partition_point(|other| *other < width);
-        let mut nearest = widths[next.saturating_sub(1)..].iter().take(2);
-        widths.is_empty() || nearest.any(|other| (other - width).abs() <= ALIKE * width)
-    };
-    doubtful.retain(is_told);
+    doubtful.retain(|gate| sure[gate.direction].is_empty() || sure[gate.direction].have(gate.width(), None));
     gates.extend(doubtful);
+    gates.retain(|gate| !through.iter().any(|way| is_in(gate, way)));
+    gates.extend(through);
     in_line(gates)
+}
+
+/// True when one strip lies in another of its direction.
+fn is_in(one: &Strip, two: &Strip) -> bool {
+    let shared = |a: [f64; 2], b: [f64; 2]| a[0].max(b[0]) < a[1].min(b[1]);
+    one.direction == two.direction && shared(one.along, two.along) && shared(one.across, two.across)
+}
+
+/// A row with what lies beyond its ends up to the walls there, which both ways beside it end at, if that may be a way
+/// and no other is there.
+fn up_to_walls(views: &[Turned], strips: &[Strip], row: &Row) -> Row {
+    let mut reaching = row.clone();
+    let (Some([below, above]), Some(other)) = (row.between, crossing(views, row.direction)) else { return reaching };
+    let view = &views[row.direction];
+    let middle = f64::midpoint(row.across[0], row.across[1]);
+    let [low, high] = [strips[below].across[0], strips[above].across[1]];
+    let is_crossed = |u: f64| {
+        strips.iter().filter(|strip| strip.direction == other.direction).any(|strip| {
+            let [s, at] = view.crossing(other, middle, strip.middle());
+            (strip.along[0]..=strip.along[1]).contains(&s) && (at - u).abs() < strip.width()
+        })
+    };
+    let most = (WIDTH.1 / view.cell) as usize;
+    for (side, end) in row.along.into_iter().enumerate() {
+        if is_crossed(end) {
+            continue;
+        }
+        let column = view.column(end);
+        let beyond =
+            if side == 0 { column.saturating_sub(most)..column } else { column..(column + most).min(view.size[0]) };
+        let closed = view.some_closed(beyond, low, high);
+        let free = if side == 0 { closed.iter().rev().position(|c| *c) } else { closed.iter().position(|c| *c) };
+        if let Some(free) = free {
+            let by = free as f64 * view.cell;
+            reaching.along[side] += if side == 0 { -by } else { by };
+        }
+    }
+    reaching
 }
 
 /// The strips without what of them leads through bays.
@@ -200,13 +233,13 @@ fn by_chance(crossed: &[Crossed]) -> f64 {
 }
 
 /// The direction that is most nearly square to another.
-fn crossing(views: &[Turned], direction: usize) -> Option<&Turned> {
+pub fn crossing(views: &[Turned], direction: usize) -> Option<&Turned> {
     let sine = |view: &&Turned| libm::sin(view.angle - views[direction].angle).abs();
     views.iter().max_by(|a, b| sine(a).total_cmp(&sine(b))).filter(|view| sine(view) > 0.5)
 }
 
 /// A way as a strip of the crossing direction, from the middle of one corridor to that of the other.
-fn strip(view: &Turned, other: &Turned, row: &Row, [from, to]: [f64; 2], middles: [f64; 2]) -> Strip {
+pub fn strip(view: &Turned, other: &Turned, row: &Row, [from, to]: [f64; 2], middles: [f64; 2]) -> Strip {
     let sin = libm::sin(other.angle - view.angle);
     let v = f64::midpoint(row.across[0], row.across[1]);
     let [s, t] = other.place(view.to_map([f64::midpoint(from, to), v]));

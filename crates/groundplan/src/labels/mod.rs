@@ -38,9 +38,11 @@ mod strips;
 mod summed;
 mod sums;
 mod sweep;
+mod through;
 mod turned;
 mod uprights;
 mod whole;
+mod widths;
 
 pub use confidence::find_confidence;
 pub use patterns::{Pattern, PatternKind, find_patterns};

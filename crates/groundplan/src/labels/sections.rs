@@ -10,7 +10,7 @@ use super::turned::{Shares, Turned};
 use crate::grid::Frame;
 
 /// A way is so wide, metres.
-const WIDTH: (f64, f64) = (1.6, 8.0);
+pub const WIDTH: (f64, f64) = (1.6, 8.0);
 /// A section up to this many pitches is an empty bay.
 const BAY: f64 = 1.08;
 /// What passes a row's end is at least so many pitches wide, or lies within its last bay.
@@ -21,6 +21,8 @@ const WHOLE: f64 = 0.1;
 const SIDE: f64 = 0.35;
 /// A column of which this share is not free is of what closes a row.
 const TAKEN: f64 = 0.5;
+/// No more than this share of a column is not free where nothing closes a row.
+const LEFT: f64 = 0.25;
 /// A way is free but for this share, metre for metre: one walks round what was left in it.
 const CLUTTER: f64 = 0.2;
 /// A way between posts, and not between frames, is free but for this share of its columns.
@@ -102,6 +104,13 @@ impl<'a> Columns<'a> {
             .filter(|&(from, to)| self.is_way(from, to))
             .map(|(from, to)| [self.place(from), self.place(to)])
             .collect()
+    }
+
+    /// The stretches in which nothing closes the row, from where to where along its middle, in order.
+    pub fn open(&self) -> Vec<[f64; 2]> {
+        let is_open = |n: usize| !self.stops(n) && self.blocked[n] <= LEFT;
+        let open: Vec<bool> = (0..self.blocked.len()).map(is_open).collect();
+        runs(&open, true).into_iter().map(|(from, to)| [self.place(from), self.place(to)]).collect()
     }
 
     /// True when what is known to be a way elsewhere goes on through the row: it is wider than a bay, and free.

@@ -11,6 +11,7 @@ use super::look::Look;
 use super::racks::{self, Row};
 use super::rooms::{Bar, Space};
 use super::turned::Turned;
+use super::widths;
 use super::{Evidence, Ground};
 use crate::bands::{Later, Side, each, map_each};
 
@@ -125,8 +126,10 @@ impl Plan {
         let found = gates::without_bays(evidence, look, views, found);
         let mut plan = Self::new(views, found);
         let gates = gates::find(evidence, look, views, &plan.strips, &plan.rows);
-        if !gates.is_empty() {
-            plan.strips.extend(gates);
+        let (known, more) = (plan.strips.len(), gates.len());
+        plan.strips.extend(gates);
+        plan.strips = widths::alike(views, plan.strips);
+        if more > 0 || plan.strips.len() < known {
             plan = Self::new(views, plan.strips);
         }
         plan
@@ -166,12 +169,14 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
                 !goes_on(n, one.max(two).min(one + two + reach(&meetings[m], n)), NICHE)
                     && !goes_on(n, one + two, NICHES)
             };
+            let is_aisle =
+                || strips[n].length() >= RECURS.max(ALONE.0 * strips[n].width()) && recurs(&strips, &placed, n);
             match met[n].len() {
                 0 | 1 if racks::is_within_row(&strips, &placed, n) => false,
                 0 if is_shut(n) => strips[n].length() >= SHUT * strips[n].width(),
                 0 if strips[n].length() >= ALONE.1.max(ALONE.0 * strips[n].width()) => true,
-                0 => strips[n].length() >= RECURS.max(ALONE.0 * strips[n].width()) && recurs(&strips, &placed, n),
-                1 => !met[n].iter().any(is_niche),
+                0 => is_aisle(),
+                1 => !met[n].iter().any(is_niche) || is_aisle(),
                 _ => true,
             }
         };

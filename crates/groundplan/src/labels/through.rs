@@ -1,0 +1,248 @@
+//! Ways through several rows: where all of them are free at one place, which chance would not make.
+//!
+//! A row of empty bays looks like a way, but rows side by side have their empty bays anywhere. How likely so many are
+//! free at one place is told by how much of all of them is free elsewhere.
+
+use super::corridors::Strip;
+use super::gates;
+use super::racks::Row;
+use super::sections::{Columns, WIDTH};
+use super::turned::Turned;
+use super::widths::Widths;
+
+/// A row and what stands in it.
+pub struct Seen<'a> {
+    /// With what lies between its ends and the walls beyond them.
+    pub row: &'a Row,
+    /// Where it begins and ends, along.
+    pub own: [f64; 2],
+    pub columns: Columns<'a>,
+    /// Of the direction that it runs along, and of the one that crosses it.
+    pub views: [&'a Turned; 2],
+    /// The two corridors beside it, the places across of their middles, and how wide the wider one is.
+    pub between: [usize; 2],
+    pub middles: [f64; 2],
+    pub beside: f64,
+}
+
+/// What is open in some rows, one beside another.
+#[derive(Clone)]
+struct Common {
+    /// From where to where, across the direction that crosses the rows.
+    ends: [f64; 2],
+    rows: Vec<usize>,
+    /// How likely it is that all of them are open there.
+    chance: f64,
+}
+
+impl Common {
+    fn is_beside(&self, other: &Self) -> bool {
+        let shared = self.ends[1].min(other.ends[1]) - self.ends[0].max(other.ends[0]);
+        shared > 0.0 && self.rows.iter().any(|row| other.rows.contains(row))
+    }
+
+    fn width(&self) -> f64 {
+        self.ends[1] - self.ends[0]
+    }
+}
+
+/// A stretch that ends between cells is so much longer than what is open of it, metres.
+const BETWEEN_CELLS: f64 = 0.1;
+/// An opening so much shorter than another is as long, metres.
+const SLACK: f64 = 0.25;
+/// What is likelier than this is no way, whatever else is one.
+const LIKELY: f64 = 0.3;
+/// Between the ends of rows and a wall is a way up to so many metres and times as wide as those along the rows, and from
+/// there on open floor.
+const AT_WALL: (f64, f64) = (6.0, 3.5);
+/// Widths are counted in such steps, metres.
+const STEP: f64 = 0.1;
+/// What crosses all rows of a place is a way when it is as wide as other ways and less likely than this by chance; when
+/// none is known; and when it has another width than those.
+const ALIKE: f64 = 0.05;
+const FIRST: f64 = 0.01;
+const OTHER: f64 = 0.005;
+/// The same where there are more rows at that place: of those that lie side by side there are many.
+const SOME: f64 = 0.0005;
+
+/// The rows of a place, and where each is open.
+pub struct Through<'a> {
+    rows: Vec<Seen<'a>>,
+    /// For each row, across the direction that crosses it.
+    open: Vec<Vec<[f64; 2]>>,
+    /// For each row those above it, with which it shares a corridor.
+    above: Vec<Vec<usize>>,
+    /// For each direction and each width in steps, how many places of its rows are open, and of how many.
+    all: Vec<Vec<[f64; 2]>>,
+}
+
+impl<'a> Through<'a> {
+    pub fn new(rows: Vec<Seen<'a>>, directions: usize) -> Self {
+        let open: Vec<_> = rows.iter().map(Seen::open).collect();
+        let is_above =
+            |one: &Seen, two: &Seen| one.row.direction == two.row.direction && one.between[1] == two.between[0];
+        let above = |one: &Seen| (0..rows.len()).filter(|&m| is_above(one, &rows[m])).collect();
+        let above = rows.iter().map(above).collect();
+        let mut made = Self { rows, open, above, all: vec![Vec::new(); directions] };
+        made.count();
+        made
+    }
+
+    /// The ways, where those of known widths are, each through one row after another.
+    pub fn find(mut self, widths: &mut [Widths]) -> Vec<Strip> {
+        let mut left = Vec::new();
+        for (n, open) in self.open.iter().enumerate() {
+            for &ends in open {
+                self.follow(&mut vec![n], ends, &mut left);
+            }
+        }
+        let mut ways: Vec<Common> = Vec::new();
+        // What is known to be a way is no longer what chance makes, and others are as wide.
+        loop {
+            left.sort_by(|a, b| a.chance.total_cmp(&b.chance));
+            let known = ways.len();
+            for common in &left {
+                if self.is_way(common, widths) && !ways.iter().any(|way| way.is_beside(common)) {
+                    ways.push(common.clone());
+                }
+            }
+            if ways.len() == known {
+                return ways.iter().flat_map(|way| way.rows.iter().map(|&n| self.rows[n].strip(way.ends))).collect();
+            }
+            for way in &ways[known..] {
+                widths[self.rows[way.rows[0]].views[1].direction].add(way.width() + BETWEEN_CELLS);
+                self.take(way);
+            }
+            self.count();
+            left.retain(|common| !ways[known..].iter().any(|way| way.is_beside(common)));
+            for common in &mut left {
+                common.chance = self.chance(&common.rows, common.ends);
+            }
+        }
+    }
+
+    /// What of a stretch that is open in some rows goes on through the next ones.
+    fn follow(&self, rows: &mut Vec<usize>, ends: [f64; 2], found: &mut Vec<Common>) {
+        let last = rows[rows.len() - 1];
+        if rows.len() > 1 && ends[1] - ends[0] <= WIDTH.1 {
+            let chance = self.chance(rows, ends);
+            if chance <= LIKELY {
+                found.push(Common { ends, rows: rows.clone(), chance });
+            }
+        }
+        for &next in &self.above[last] {
+            for open in &self.open[next] {
+                let both = [ends[0].max(open[0]), ends[1].min(open[1])];
+                if both[1] - both[0] >= WIDTH.0 {
+                    rows.push(next);
+                    self.follow(rows, both, found);
+                    rows.pop();
+                }
+            }
+        }
+    }
+
+    /// Takes a way from what is open in its rows.
+    fn take(&mut self, way: &Common) {
+        let [from, to] = way.ends;
+        for &n in &way.rows {
+            let cut = self.open[n].iter().flat_map(|&[a, b]| [[a, b.min(from)], [a.max(to), b]]);
+            self.open[n] = cut.filter(|[a, b]| a < b).collect();
+        }
+    }
+
+    /// Counts the places of all rows anew.
+    fn count(&mut self) {
+        self.all = (0..self.all.len()).map(|direction| self.counts_of_all(direction)).collect();
+    }
+
+    /// How likely it is that some rows are open at one place, by how much of each, and of all, is so elsewhere.
+    fn chance(&self, rows: &[usize], ends: [f64; 2]) -> f64 {
+        let width = ends[1] - ends[0];
+        let [free, places] = self.all[self.rows[rows[0]].row.direction][(width / STEP) as usize];
+        let own = rows.len() as f64;
+        let common = ((free - own).max(0.0) + 0.5) / ((places - own).max(0.0) + 1.0);
+        let chance = |&n: &usize| {
+            let [free, places] = self.counts(n, width).map(|count| (count - 1.0).max(0.0));
+            common.max((free / places.max(1.0)).min(1.0))
+        };
+        rows.iter().map(chance).product()
+    }
+
+    /// How many places as wide of a row are open, and how many it has.
+    fn counts(&self, n: usize, width: f64) -> [f64; 2] {
+        let open = self.open[n].iter().map(|open| ((open[1] - open[0]) / (width - SLACK)).floor());
+        [open.sum(), self.rows[n].row.length() / width]
+    }
+
+    fn counts_of_all(&self, direction: usize) -> Vec<[f64; 2]> {
+        let rows: Vec<_> = (0..self.rows.len()).filter(|&n| self.rows[n].row.direction == direction).collect();
+        let of_width = |step: usize| {
+            let counts = rows.iter().map(|&n| self.counts(n, (step as f64 * STEP).max(WIDTH.0)));
+            counts.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]])
+        };
+        (0..=(WIDTH.1 / STEP) as usize).map(of_width).collect()
+    }
+
+    fn is_way(&self, common: &Common, widths: &[Widths]) -> bool {
+        let is_floor =
+            |seen: &Seen| common.width() > AT_WALL.0.min(AT_WALL.1 * seen.beside) && seen.is_left(common.ends);
+        if common.rows.iter().any(|&n| is_floor(&self.rows[n])) {
+            return false;
+        }
+        let [view, other] = self.rows[common.rows[0]].views;
+        let known = &widths[other.direction];
+        let limit = match (self.is_whole(common), known.have(common.width() + BETWEEN_CELLS, view.pitch)) {
+            (false, _) => SOME,
+            (true, true) => ALIKE,
+            (true, false) if known.is_empty() => FIRST,
+            (true, false) => OTHER,
+        };
+        common.chance < limit
+    }
+
+    /// True when it leads through the first row of its place and the last one.
+    fn is_whole(&self, common: &Common) -> bool {
+        let middle = f64::midpoint(common.ends[0], common.ends[1]);
+        let (first, last) = (common.rows[0], common.rows[common.rows.len() - 1]);
+        let is_next = |n: usize| self.above[last].contains(&n) || self.above[n].contains(&first);
+        !(0..self.rows.len()).any(|n| is_next(n) && self.rows[n].holds(middle))
+    }
+}
+
+impl Seen<'_> {
+    fn middle(&self) -> f64 {
+        f64::midpoint(self.row.across[0], self.row.across[1])
+    }
+
+    /// Where nothing stands in it, across the direction that crosses it.
+    fn open(&self) -> Vec<[f64; 2]> {
+        let [view, other] = self.views;
+        let place = |u: f64| other.place(view.to_map([u, self.middle()]))[1];
+        let sorted = |ends: [f64; 2]| [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        self.columns.open().into_iter().map(|ends| sorted(ends.map(place))).collect()
+    }
+
+    /// The place along it where something crosses it.
+    fn along(&self, across: f64) -> f64 {
+        let [view, other] = self.views;
+        view.crossing(other, self.middle(), across)[1]
+    }
+
+    /// True when a stretch goes on beyond an end of the row.
+    fn is_left(&self, ends: [f64; 2]) -> bool {
+        ends.iter().any(|&end| !(self.own[0]..=self.own[1]).contains(&self.along(end)))
+    }
+
+    /// True when what lies there across the crossing direction crosses it.
+    fn holds(&self, across: f64) -> bool {
+        (self.row.along[0]..=self.row.along[1]).contains(&self.along(across))
+    }
+
+    /// A way through it.
+    fn strip(&self, ends: [f64; 2]) -> Strip {
+        let [view, other] = self.views;
+        let [from, to] = ends.map(|end| self.along(end));
+        gates::strip(view, other, self.row, [from.min(to), from.max(to)], self.middles)
+    }
+}

@@ -1,0 +1,113 @@
+//! Ways across rows are of one width: what leads through all rows of a place tells what leads through some of them.
+
+use super::beside::{placed, wider};
+use super::corridors::Strip;
+use super::gates::crossing;
+use super::racks::{self, Row};
+use super::turned::Turned;
+
+/// Ways across a place are of one width but for this share.
+const ALIKE: f64 = 0.15;
+/// What leads through rows and on for so long, metres, is known by more than those.
+const REST: f64 = 6.0;
+/// A bay that is so much wider or narrower than a way, as a share of it, can be told from one.
+const APART: f64 = 0.1;
+
+/// How wide the ways of a direction are that are no bays, metres.
+#[derive(Default)]
+pub struct Widths(Vec<f64>);
+
+impl Widths {
+    /// Of some ways, for each direction.
+    pub fn of<'a>(views: &[Turned], strips: impl Iterator<Item = &'a Strip>) -> Vec<Self> {
+        let mut all: Vec<Self> = views.iter().map(|_| Self::default()).collect();
+        strips.for_each(|strip| all[strip.direction].0.push(strip.width()));
+        all
+    }
+
+    /// With one more.
+    pub fn add(&mut self, width: f64) {
+        self.0.push(width);
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// True when one is as wide, and a bay is not nearer to that.
+    pub fn have(&self, width: f64, pitch: Option<f64>) -> bool {
+        let is_like = |&own: &f64| {
+            let off = (own - width).abs();
+            let is_bay = pitch.is_some_and(|bay| (bay - own).abs() > APART * own && (bay - width).abs() < off);
+            off <= ALIKE * width && !is_bay
+        };
+        self.0.iter().any(is_like)
+    }
+}
+
+/// The strips without those that lead through some rows of a place and have no width of what leads through all: bays.
+pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
+    let placed = placed(views, strips.iter().map(Strip::place));
+    let mut stays = vec![true; strips.len()];
+    for view in views {
+        let Some(other) = crossing(views, view.direction) else { continue };
+        let is_aisle =
+            |n: &usize| strips[*n].direction == view.direction && !racks::is_within_row(&strips, &placed, *n);
+        let aisles: Vec<Strip> = (0..strips.len()).filter(is_aisle).map(|n| strips[n].clone()).collect();
+        let extents: Vec<[f64; 2]> = aisles.iter().map(|strip| strip.along).collect();
+        let rows = racks::between(views, &aisles, &extents);
+        let through = Crossed::of_each([view, other], &strips, &aisles, &rows);
+        let whole = |n: &usize| through[*n].rows >= 2 && !through[*n].goes_on;
+        let known = Widths((0..strips.len()).filter(whole).map(|n| strips[n].width()).collect());
+        for (n, crossed) in through.iter().enumerate() {
+            let is_some = crossed.rows > 0 && crossed.goes_on && crossed.rest <= REST && !known.is_empty();
+            stays[n] &= !is_some || known.have(strips[n].width(), view.pitch);
+        }
+    }
+    let mut flags = stays.into_iter();
+    strips.into_iter().filter(|_| flags.next().unwrap_or(true)).collect()
+}
+
+/// What a strip crosses of the rows of a place.
+#[derive(Clone, Default)]
+struct Crossed {
+    rows: usize,
+    /// How long it is without what leads through them, from aisle to aisle, metres.
+    rest: f64,
+    /// It ends between two of them.
+    goes_on: bool,
+}
+
+impl Crossed {
+    /// Of each strip, where the rows lie between aisles, along which it is not.
+    fn of_each(views: [&Turned; 2], strips: &[Strip], aisles: &[Strip], rows: &[Row]) -> Vec<Self> {
+        let [view, other] = views;
+        // For each strip the corridors beside the rows that it crosses, and beside those that it would if it went on.
+        let mut beside: Vec<[Vec<[usize; 2]>; 2]> = vec![Default::default(); strips.len()];
+        let mut rest: Vec<f64> = strips.iter().map(Strip::length).collect();
+        for row in rows {
+            let Some(between) = row.between else { continue };
+            let shorter = between.map(|n| aisles[n].length()).into_iter().fold(f64::INFINITY, f64::min);
+            let middle = f64::midpoint(row.across[0], row.across[1]);
+            for (n, strip) in strips.iter().enumerate() {
+                if strip.direction != other.direction || strip.length() >= shorter {
+                    continue;
+                }
+                let [s, u] = view.crossing(other, middle, strip.middle());
+                let [from, to] = wider(row.along, strip.width());
+                if (from..=to).contains(&u) {
+                    let is_crossed = (strip.along[0]..=strip.along[1]).contains(&s);
+                    beside[n][usize::from(!is_crossed)].push(between);
+                    if is_crossed {
+                        rest[n] -= aisles[between[1]].middle() - aisles[between[0]].middle();
+                    }
+                }
+            }
+        }
+        let crossed = |([own, others], rest): ([Vec<[usize; 2]>; 2], f64)| {
+            let is_next = |one: &[usize; 2]| own.iter().any(|two| one[0] == two[1] || one[1] == two[0]);
+            Self { rows: own.len(), rest, goes_on: others.iter().any(is_next) }
+        };
+        beside.into_iter().zip(rest).map(crossed).collect()
+    }
+}

@@ -1,0 +1,82 @@
+"""Which gaps in rows of racks are ways across them and which are empty bays, on maps that no simulator made up."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import groundplan
+
+Picture = npt.NDArray[np.uint8]
+
+RESOLUTION = 0.05
+AISLE, DEPTH = 56, 20  # pixels: 2.8 m between rows, two racks of 1 m back to back
+BAY, BAYS = 42, 6
+
+
+def hall(width: int, depth: int) -> Picture:
+    """Free space of so many pixels within walls of 0.1 m."""
+    picture = np.full((depth + 40, width + 40), 205, np.uint8)
+    picture[18 : depth + 22, 18 : width + 22] = 0
+    picture[20 : depth + 20, 20 : width + 20] = 254
+    return picture
+
+
+def racks_of_legs(seed: int) -> Picture:
+    """A hall of 36 m by 12.4 m with two rows of racks in two blocks, four bays of ten empty and the legs seen there.
+
+    A way of 4.2 m, as wide as two bays, lies between the blocks, and one of 3.5 m at either wall.
+    """
+    draws = np.random.default_rng(seed)
+    end, way, block = 70, 84, BAY * BAYS
+    picture = hall(2 * (end + block) + way, 3 * AISLE + 4 * DEPTH)
+    for row in (20 + AISLE, 20 + 2 * AISLE + 2 * DEPTH):
+        for left in (20 + end, 20 + end + block + way):
+            for rack in (row, row + DEPTH):
+                for bay in range(BAYS + 1):
+                    x = min(max(left + bay * BAY - 1, left), left + block - 2)
+                    picture[rack : rack + 2, x : x + 2] = picture[rack + DEPTH - 2 : rack + DEPTH, x : x + 2] = 0
+                for x in (left + BAY * np.flatnonzero(draws.random(BAYS) < 0.6)).tolist():
+                    picture[rack + 1 : rack + DEPTH - 1, x + 2 : x + BAY - 2] = 0
+    return picture
+
+
+def shelves(empty: list[tuple[int, int]]) -> Picture:
+    """A hall with three rows of six shelves of 2.6 m between ways of 3.6 m; of the rows given shelves are empty."""
+    bay, end = 52, 72
+    picture = hall(2 * end + 6 * bay, 4 * AISLE + 6 * DEPTH)
+    for row in range(3):
+        low = 20 + AISLE + row * (AISLE + 2 * DEPTH)
+        picture[low : low + 2 * DEPTH, 20 + end : 20 + end + 6 * bay] = 0
+        for _, shelf in (place for place in empty if place[0] == row):
+            left = 20 + end + shelf * bay
+            picture[low : low + 2 * DEPTH, left : left + bay] = 254
+    return picture
+
+
+@pytest.mark.parametrize("seed", [2, 3, 4, 5])
+def test_a_way_through_two_half_empty_rows_is_told_by_the_legs_that_do_not_stand_in_it(seed: int) -> None:
+    survey = groundplan.survey(racks_of_legs(seed), resolution=RESOLUTION)
+    across = [way for way in survey.of_kind("corridor") if way["name"].startswith("C")]
+    assert sorted(way["axis"][0][0] for way in across) == pytest.approx([2.75, 19.2, 35.65], abs=0.3)
+    crossings = [junction["type"] for junction in survey.of_kind("junction")]
+    assert sorted(crossings) == ["L"] * 4 + ["T"] * 4 + ["X"]
+
+
+@pytest.mark.parametrize("empty", [[], [(0, 2)], [(1, 3)], [(0, 1), (2, 4)]])
+def test_an_empty_shelf_in_one_row_is_no_way_where_those_through_all_rows_are_wider(
+    empty: list[tuple[int, int]],
+) -> None:
+    survey = groundplan.survey(shelves(empty), resolution=RESOLUTION)
+    across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
+    assert across == pytest.approx([3.6, 3.6], abs=0.15)
+
+
+def test_a_gap_as_wide_as_the_ways_of_the_place_is_a_way_though_it_leads_through_one_row() -> None:
+    picture = shelves([])
+    low = 20 + 2 * AISLE + 2 * DEPTH
+    picture[low : low + 2 * DEPTH, 210:282] = 254
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
+    assert across == pytest.approx([3.6] * 3, abs=0.15)
