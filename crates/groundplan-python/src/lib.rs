@@ -171,7 +171,7 @@ mod _core {
         parameters: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let radiograms = radiograms.iter().map(convert::radiogram).collect::<PyResult<Vec<_>>>()?;
-        convert::from_lines(py, lines::find_lines(&radiograms, &parameters::read(parameters)?))
+        convert::from_lines(py, lines::find_lines(&radiograms, &parameters::read(parameters)?, 1))
     }
 
     /// II-C: vertices, edges, faces.

@@ -103,3 +103,13 @@ fn next(words: &[u64], mut at: usize, end: usize, wanted: bool) -> usize {
 pub fn lowest(count: usize) -> u64 {
     if count >= WORD { u64::MAX } else { (1 << count) - 1 }
 }
+
+/// A bit for each of up to [`WORD`] pixels, mostly alike eight by eight: whether it is of the values that are wanted.
+pub fn word_of(pixels: &[u8], wanted: &[bool; 256]) -> u64 {
+    pixels.chunks(8).rev().fold(0, |word, eight| {
+        let bit = |pixel: u8| u64::from(wanted[usize::from(pixel)]);
+        let alike = <[u8; 8]>::try_from(eight).is_ok_and(|eight| eight == [eight[0]; 8]);
+        let bits = if alike { 255 * bit(eight[0]) } else { eight.iter().rev().fold(0, |bits, &p| bits << 1 | bit(p)) };
+        word << 8 | bits
+    })
+}

@@ -6,6 +6,7 @@
 //! eigenvalues' disparity is the gradient's magnitude. Sums of integers only, so nothing depends on the order.
 
 use crate::bands::{BAND_ROWS, map_bands};
+use crate::bits::{WORD, word_of};
 use crate::grid::{Grid, State, undirected};
 use crate::parameters::Parameters;
 use crate::pixels::Pixels;
@@ -131,37 +132,33 @@ impl Edges {
     }
 }
 
-/// Pixels that are looked at together.
-const WORD: usize = 8;
-
 /// Columns of the edge pixels of each row of the band, among some columns.
 fn edge_pixels(grid: &Grid, band: Range<usize>, among: &Range<usize>) -> Vec<Vec<u32>> {
     let taken = grid.table.states.map(|s| s == State::Occupied);
-    let (width, height) = (grid.frame.width, grid.frame.height);
-    let is_taken = |row: &[u8], x: usize| taken[usize::from(row[x])];
+    // With a column to either side, where there is one.
+    let wider = among.start.saturating_sub(1)..(among.end + 1).min(grid.frame.width);
+    let words = |y: usize| -> Vec<u64> {
+        grid.row(y)[wider.clone()].chunks(WORD).map(|pixels| word_of(pixels, &taken)).collect()
+    };
+    // The map's border is no edge: what lies beyond it is not seen.
+    let (top, last) = (grid.frame.height - 1, wider.len() - 1);
+    let mut rows = [words(band.start.saturating_sub(1)), words(band.start), Vec::new()];
     band.map(|y| {
-        let row = grid.row(y);
-        // The map's border is no edge: what lies beyond it is not seen.
-        let below = grid.row(y.saturating_sub(1));
-        let above = grid.row((y + 1).min(height - 1));
+        rows[2] = words((y + 1).min(top));
+        let [below, own, above] = &rows;
         let mut columns = Vec::new();
-        for (n, pixels) in row[among.clone()].chunks(WORD).enumerate() {
-            // Eight free or unknown pixels alike are the most of a map.
-            if pixels == [pixels[0]; WORD] && !taken[usize::from(pixels[0])] {
-                continue;
-            }
-            let first = among.start + n * WORD;
-            for x in first..first + pixels.len() {
-                if is_taken(row, x)
-                    && !(is_taken(row, x.saturating_sub(1))
-                        && is_taken(row, (x + 1).min(width - 1))
-                        && is_taken(below, x)
-                        && is_taken(above, x))
-                {
-                    columns.push(x as u32);
-                }
+        for (n, &word) in own.iter().enumerate().filter(|(_, word)| **word != 0) {
+            let left = word << 1 | if n == 0 { word & 1 } else { own[n - 1] >> (WORD - 1) };
+            let next =
+                if n == last / WORD { (word >> (last % WORD) & 1) << (last % WORD) } else { own[n + 1] << (WORD - 1) };
+            let mut edge = word & !(left & (word >> 1 | next) & below[n] & above[n]);
+            while edge != 0 {
+                columns.push((wider.start + n * WORD + edge.trailing_zeros() as usize) as u32);
+                edge &= edge - 1;
             }
         }
+        columns.retain(|&x| among.contains(&(x as usize)));
+        rows.rotate_left(1);
         columns
     })
     .collect()

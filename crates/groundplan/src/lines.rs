@@ -1,5 +1,6 @@
 //! II-B: peaks of the radiograms -> lines; III: the resolution knob over them.
 
+use crate::bands::map_each;
 use crate::grid::tidy;
 use crate::parameters::Parameters;
 use crate::radiograms::Radiogram;
@@ -52,21 +53,9 @@ const FINEST: f64 = 0.01;
 
 /// Finds the lines of all radiograms.
 #[must_use]
-pub fn find_lines(radiograms: &[Radiogram], parameters: &Parameters) -> Lines {
-    let mut found: Vec<(u32, f64, f64, f64)> = Vec::new();
-    for radiogram in radiograms {
-        let signal = &radiogram.values;
-        let peaks = wavelets::peaks(&respond(radiogram, parameters), parameters.lines_snr);
-        for (n, peak) in peaks.iter().enumerate() {
-            // A line's structure reaches half way to its neighbours at most.
-            let before = n.checked_sub(1).map_or(0, |m| usize::midpoint(peaks[m].bin, peak.bin + 1));
-            let after = peaks.get(n + 1).map_or(signal.len(), |next| usize::midpoint(peak.bin, next.bin) + 1);
-            let (place, amplitude) = measure(signal, peak, before..after);
-            let offset = radiogram.start + place * radiogram.step;
-            let width = peak.width * radiogram.step;
-            found.push((radiogram.direction as u32, tidy(offset), tidy(amplitude), tidy(width)));
-        }
-    }
+pub fn find_lines(radiograms: &[Radiogram], parameters: &Parameters, threads: usize) -> Lines {
+    let found = map_each(radiograms.len(), threads, |n| lines_of(&radiograms[n], parameters));
+    let mut found = found.concat();
     let amplitudes: Vec<f64> = found.iter().map(|f| f.2).collect();
     let least = least_amplitude(&amplitudes, parameters);
     found.retain(|f| f.2 >= least);
@@ -78,6 +67,21 @@ pub fn find_lines(radiograms: &[Radiogram], parameters: &Parameters) -> Lines {
         widths: found.iter().map(|f| f.3).collect(),
         min_amplitude: least,
     }
+}
+
+/// Direction, offset, amplitude and width of the lines of one radiogram.
+fn lines_of(radiogram: &Radiogram, parameters: &Parameters) -> Vec<(u32, f64, f64, f64)> {
+    let signal = &radiogram.values;
+    let peaks = wavelets::peaks(&respond(radiogram, parameters), parameters.lines_snr);
+    let line = |(n, peak): (usize, &Peak)| {
+        // A line's structure reaches half way to its neighbours at most.
+        let before = n.checked_sub(1).map_or(0, |m| usize::midpoint(peaks[m].bin, peak.bin + 1));
+        let after = peaks.get(n + 1).map_or(signal.len(), |next| usize::midpoint(peak.bin, next.bin) + 1);
+        let (place, amplitude) = measure(signal, peak, before..after);
+        let offset = radiogram.start + place * radiogram.step;
+        (radiogram.direction as u32, tidy(offset), tidy(amplitude), tidy(peak.width * radiogram.step))
+    };
+    peaks.iter().enumerate().map(line).collect()
 }
 
 /// The wavelet response that a radiogram's peaks are read from.

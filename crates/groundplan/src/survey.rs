@@ -153,7 +153,7 @@ impl Structure {
         let found = || find_directions(frame, &gradients, parameters, threads);
         let directions = given.directions.take().unwrap_or_else(found);
         let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
-        let lines = given.lines.take().unwrap_or_else(|| find_lines(&radiograms, parameters));
+        let lines = given.lines.take().unwrap_or_else(|| find_lines(&radiograms, parameters, threads));
         Self { gradients, directions, radiograms, lines }
     }
 

@@ -51,7 +51,8 @@ pub fn widths(low: f64, high: f64) -> Vec<f64> {
 /// The continuous wavelet transform of `signal` with Ricker wavelets of unit energy.
 #[must_use]
 pub fn transform(signal: &[f64], widths: &[f64]) -> Response {
-    let rows = widths.iter().map(|&width| convolve(signal, &ricker(width))).collect();
+    let some: Vec<(usize, f64)> = signal.iter().copied().enumerate().filter(|(_, value)| *value != 0.0).collect();
+    let rows = widths.iter().map(|&width| convolve(signal.len(), &some, &ricker(width))).collect();
     Response { widths: widths.to_vec(), rows }
 }
 
@@ -74,20 +75,33 @@ fn ricker(sigma: f64) -> Vec<f64> {
     half
 }
 
-/// Convolution with a symmetric kernel given by its right half; beyond the ends the signal is zero.
-fn convolve(signal: &[f64], half: &[f64]) -> Vec<f64> {
-    let mut out = vec![0.0; signal.len()];
-    for (n, &value) in signal.iter().enumerate() {
-        if value == 0.0 {
-            continue;
+/// Values of a convolution that are made together.
+const TOGETHER: usize = 16;
+
+/// Convolution of so many values, of which those that are not zero are given with their places, with a symmetric kernel
+/// given by its right half; beyond the ends the signal is zero.
+fn convolve(count: usize, signal: &[(usize, f64)], half: &[f64]) -> Vec<f64> {
+    let reach = half.len() - 1;
+    // With zeros at both ends, so that of values made together each finds its part.
+    let (left, beyond) = (half[1..].iter().rev().copied(), [0.0; TOGETHER]);
+    let kernel: Vec<f64> = beyond.into_iter().chain(left).chain(half.iter().copied()).chain(beyond).collect();
+    let mut out = vec![0.0; count];
+    let (mut from, mut to) = (0, 0);
+    for (first, some) in (0usize..).step_by(TOGETHER).zip(out.chunks_mut(TOGETHER)) {
+        while signal.get(from).is_some_and(|(n, _)| n + reach < first) {
+            from += 1;
         }
-        out[n] += value * half[0];
-        for (o, k) in out[n + 1..].iter_mut().zip(&half[1..]) {
-            *o += value * k;
+        while signal.get(to).is_some_and(|(n, _)| *n < first + TOGETHER + reach) {
+            to += 1;
         }
-        for (o, k) in out[..n].iter_mut().rev().zip(&half[1..]) {
-            *o += value * k;
+        let mut sums = [0.0; TOGETHER];
+        for &(n, value) in &signal[from..to] {
+            let start = first + TOGETHER + reach - n;
+            for (sum, k) in sums.iter_mut().zip(&kernel[start..start + TOGETHER]) {
+                *sum += value * k;
+            }
         }
+        some.copy_from_slice(&sums[..some.len()]);
     }
     out
 }
@@ -182,9 +196,15 @@ fn noise(narrow: &[f64]) -> Vec<f64> {
     let least = if some.is_empty() { 0.0 } else { 0.25 * *some.select_nth_unstable_by(middle, f64::total_cmp).1 };
     let mut window: Vec<f64> = vec![0.0; 2 * NOISE_BINS + 1];
     let mut exchange = |gone: f64, come: f64| {
-        let place = window.partition_point(|v| *v < gone);
-        window.remove(place);
-        window.insert(window.partition_point(|v| *v < come), come);
+        let [from, to] = [gone, come].map(|value| window.partition_point(|v| *v < value));
+        // Only what lies between the two moves.
+        if from < to {
+            window.copy_within(from + 1..to, from);
+            window[to - 1] = come;
+        } else {
+            window.copy_within(to..from, to + 1);
+            window[to] = come;
+        }
         window[NOISE_BINS]
     };
     let at = |n: usize| magnitudes.get(n).copied().unwrap_or(0.0);

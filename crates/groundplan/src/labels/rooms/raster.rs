@@ -2,7 +2,7 @@
 
 use super::islands::{self, Islands};
 use crate::bands::map_bands;
-use crate::bits::{Bits, WORD, lowest};
+use crate::bits::{Bits, WORD, lowest, word_of};
 use crate::grid::{Grid, State};
 
 /// The part of the map that holds free space, with one pixel of not-free around it, so that no pass asks for borders.
@@ -163,17 +163,6 @@ impl Part {
         }
         part
     }
-}
-
-/// A bit for each of some pixels, mostly alike eight by eight.
-fn word_of(pixels: &[u8], is_free: &[bool; 256]) -> u64 {
-    pixels.chunks(8).rev().fold(0, |word, eight| {
-        let free = |pixel: u8| u64::from(is_free[usize::from(pixel)]);
-        let alike = <[u8; 8]>::try_from(eight).is_ok_and(|eight| eight == [eight[0]; 8]);
-        let bits =
-            if alike { 255 * free(eight[0]) } else { eight.iter().rev().fold(0, |bits, &p| bits << 1 | free(p)) };
-        word << 8 | bits
-    })
 }
 
 /// Takes out of a row of the raster what is not free in one of the map's rows.
