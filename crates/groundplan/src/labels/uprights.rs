@@ -8,6 +8,8 @@ use crate::sets::Sets;
 const LONGEST: f64 = 1.7;
 /// Edge pixels no further apart than this along either axis are of one thing.
 const GAP: u32 = 2;
+/// So many things at once are few.
+const MANY: usize = 1 << 16;
 
 /// Something small that stands by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,13 +32,22 @@ impl Upright {
 
 /// The uprights of a map, from its lowest row up.
 pub fn find(evidence: &Evidence) -> Vec<Upright> {
-    let mut things = Things { sets: Sets::new(0), sums: Vec::new(), rows: Default::default(), row: (0, Vec::new()) };
+    let frame = &evidence.grid.frame;
+    let mut things = Things {
+        sets: Sets::new(0),
+        sums: Vec::new(),
+        rows: Default::default(),
+        row: (0, Vec::new()),
+        longest: (LONGEST / frame.resolution) as u32,
+        small: Vec::new(),
+        many: MANY,
+    };
     evidence.gradients.pixels.iter().for_each(|pixel| things.add(pixel));
     things.end_row(0);
-    let frame = &evidence.grid.frame;
-    let longest = (LONGEST / frame.resolution) as u32;
-    let is_small = |sums: &&Sums| sums.count > 0 && (0..2).all(|axis| sums.high[axis] - sums.low[axis] < longest);
-    things.sums.iter().filter(is_small).map(|sums| sums.upright(frame)).collect()
+    things.rows = Default::default();
+    things.let_go();
+    things.small.sort_by_key(|sums| sums.first_run);
+    things.small.iter().map(|sums| sums.upright(frame)).collect()
 }
 
 /// Edge pixels of a row one after another.
@@ -57,6 +68,12 @@ struct Things {
     rows: [(u32, Vec<Run>); GAP as usize],
     /// The row that is being read.
     row: (u32, Vec<Run>),
+    /// What is as long along an axis, pixels, is not small.
+    longest: u32,
+    /// Those that are small, of all that have ended.
+    small: Vec<Sums>,
+    /// When there are so many, those that have ended are let go of.
+    many: usize,
 }
 
 impl Things {
@@ -71,7 +88,7 @@ impl Things {
             }
             _ => {
                 let thing = self.sets.add();
-                self.sums.push(Sums { low: [x, y], ..Sums::default() });
+                self.sums.push(Sums { low: [x, y], first_run: [y, x], ..Sums::default() });
                 self.row.1.push(Run { from: x, to: x, thing });
                 thing
             }
@@ -81,7 +98,7 @@ impl Things {
 
     /// Joins a row to those below it, and begins another one.
     fn end_row(&mut self, next: u32) {
-        let Self { sets, sums, rows, row } = self;
+        let Self { sets, sums, rows, row, .. } = self;
         for (_, below) in rows.iter().filter(|(y, _)| row.0.wrapping_sub(*y) <= GAP) {
             let mut first = 0;
             for run in &row.1 {
@@ -103,6 +120,28 @@ impl Things {
         std::mem::swap(&mut rows[0], row);
         row.0 = next;
         row.1.clear();
+        if self.sums.len() > self.many {
+            self.let_go();
+            self.many = MANY.max(2 * self.sums.len());
+        }
+    }
+
+    /// Lets go of all things that have ended below the last rows, but for the small ones; the others keep their order.
+    fn let_go(&mut self) {
+        let Self { sets, sums, rows, longest, small, .. } = self;
+        let mut goes_on = vec![false; sums.len()];
+        let runs = || rows.iter().flat_map(|(_, runs)| runs);
+        runs().for_each(|run| goes_on[sets.of(run.thing) as usize] = true);
+        let is_small = |sums: &Sums| sums.count > 0 && (0..2).all(|axis| sums.high[axis] - sums.low[axis] < *longest);
+        small.extend(sums.iter().zip(&goes_on).filter(|(sums, goes_on)| !**goes_on && is_small(sums)).map(|(s, _)| *s));
+        let mut others = Sets::new(0);
+        let names: Vec<u32> = goes_on.iter().map(|goes_on| if *goes_on { others.add() } else { 0 }).collect();
+        for run in rows.iter_mut().flat_map(|(_, runs)| runs) {
+            run.thing = names[sets.of(run.thing) as usize];
+        }
+        let mut goes_on = goes_on.into_iter();
+        sums.retain(|_| goes_on.next().unwrap_or(false));
+        *sets = others;
     }
 }
 
@@ -110,6 +149,8 @@ impl Things {
 #[derive(Clone, Copy, Default)]
 struct Sums {
     count: u32,
+    /// Row and column where its first run begins.
+    first_run: [u32; 2],
     low: [u32; 2],
     high: [u32; 2],
     /// Of columns and rows.
