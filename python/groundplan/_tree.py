@@ -65,7 +65,7 @@ def parts(survey: Survey) -> dict[str, Any]:
     cut, measured, walls = survey.subdivision, survey.occupancy, survey.walls
     dual: Adjacency | None = survey.__dict__.get("adjacency")
     # What is not made yet need not be: links are the edges between two faces.
-    inner = np.flatnonzero((cut.edge_faces != NONE).all(axis=1)).astype(np.uint32) if dual is None else dual.edges
+    inner = between_faces(cut.edge_faces) if dual is None else dual.edges
     source = {} if survey.source is None else {"source": {"file": survey.source, "reading": survey.reading}}
 
     def edges(some: slice) -> list[Any]:
@@ -132,6 +132,15 @@ def parts(survey: Survey) -> dict[str, Any]:
             ],
         },
     }
+
+
+def between_faces(edge_faces: npt.NDArray[np.int32]) -> npt.NDArray[np.uint32]:
+    """The edges that have a face on both sides; of a large map they are looked at some at a time, to hold little."""
+    found = [np.zeros(0, np.uint32)]
+    for first in range(0, len(edge_faces), 1 << 20):
+        inner = (edge_faces[first : first + (1 << 20)] != NONE).all(axis=1)
+        found.append((first + np.flatnonzero(inner)).astype(np.uint32))
+    return np.concatenate(found)
 
 
 def to_tree(survey: Survey) -> dict[str, Any]:
