@@ -115,3 +115,8 @@ def test_a_row_goes_on_where_one_of_its_aisles_was_not_driven() -> None:
     pytest.importorskip("shapely", reason="scores need shapely and scipy")
     made = simulate.warehouse(seed=114, width=60.0, depth=40.0, partial=0.5, lidar_range=12.0, **SMALL)
     assert score(groundplan.survey(made.map).to_dict(), made.truth)["rack_recall"] >= 0.9
+
+
+def test_rooms_and_the_unknown_beside_two_ways_that_cross_are_no_racks(shared: Path) -> None:
+    survey = groundplan.survey(groundplan.read(shared / "maps" / "halmstad" / "E5_13.yaml"))
+    assert len(survey.of_kind("corridor")) == 2 and survey.of_kind("rack") == []

@@ -11,15 +11,15 @@ use crate::sets::Sets;
 const SHARED: f64 = 0.7;
 const ALIKE: f64 = 0.7;
 const ALIKE_RAGGED: f64 = 0.5;
-/// No two are further apart than so many of the widths that they share, nor than the shorter one is long.
+/// No two are further apart than so many times as they are wide, nor than the shorter one is long.
 const APART: f64 = 3.0;
 /// Between them the floor is free but for this share.
 const CLUTTER: f64 = 0.1;
 /// What stands so near to the sides, in widths, does not bar the way.
 const MARGIN: f64 = 0.1;
 
-/// The ways, and in place of pieces of one the whole.
-pub fn join(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
+/// The ways, and in place of pieces of one the whole, no narrower than that.
+pub fn join(views: &[Turned], mut strips: Vec<Strip>, least: f64) -> Vec<Strip> {
     let mut order: Vec<usize> = (0..strips.len()).collect();
     let place = |n: usize| (strips[n].direction, strips[n].across[0]);
     order.sort_by(|&a, &b| place(a).0.cmp(&place(b).0).then(place(a).1.total_cmp(&place(b).1)));
@@ -28,14 +28,16 @@ pub fn join(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
     for (n, &a) in order.iter().enumerate() {
         let (direction, high) = (strips[a].direction, strips[a].across[1]);
         let beside = order[n + 1..].iter().take_while(|&&b| place(b).0 == direction && place(b).1 < high);
-        pairs.extend(beside.flat_map(|&b| [(a, b), (b, a)]).filter(|&(a, b)| is_one(views, &strips, &placed, [a, b])));
+        pairs.extend(
+            beside.flat_map(|&b| [(a, b), (b, a)]).filter(|&(a, b)| is_one(views, &strips, &placed, least, [a, b])),
+        );
     }
     let gap = |&(a, b): &(usize, usize)| strips[b].along[0] - strips[a].along[1];
     pairs.sort_by(|p, q| gap(p).total_cmp(&gap(q)).then(p.cmp(q)));
     let mut wholes = Sets::new(strips.len());
     for (a, b) in pairs {
         let [a, b] = [a, b].map(|n| wholes.of(n as u32) as usize);
-        if is_one(views, &strips, &placed, [a, b]) {
+        if is_one(views, &strips, &placed, least, [a, b]) {
             let across = shared(&strips[a], &strips[b]);
             let (along, score) = ([strips[a].along[0], strips[b].along[1]], strips[a].score + strips[b].score);
             let bays = strips[a].bays && strips[b].bays;
@@ -59,7 +61,7 @@ fn shared(one: &Strip, two: &Strip) -> [f64; 2] {
 }
 
 /// True when the way along one strip goes on as another, the next one; of all it is known where they lie, or lay.
-fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], [a, b]: [usize; 2]) -> bool {
+fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], least: f64, [a, b]: [usize; 2]) -> bool {
     let (one, two) = (&strips[a], &strips[b]);
     let between = [one.along[1], two.along[0]];
     let gap = between[1] - between[0];
@@ -69,7 +71,7 @@ fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], [a, b]: [usize;
     let [low, high] = shared(one, two);
     let (narrow, wide) = (one.width().min(two.width()), one.width().max(two.width()));
     let alike = if one.is_ragged || two.is_ragged { ALIKE_RAGGED } else { ALIKE };
-    if high - low < SHARED * narrow || narrow < alike * wide || gap > APART * (high - low) {
+    if high - low < least.max(SHARED * narrow) || narrow < alike * wide || gap > APART * f64::midpoint(narrow, wide) {
         return false;
     }
     let is_between = |other: &Strip| {

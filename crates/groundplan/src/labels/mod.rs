@@ -16,6 +16,7 @@ mod legs;
 mod look;
 mod mouths;
 mod names;
+mod narrowed;
 mod near;
 mod on_line;
 mod outline;

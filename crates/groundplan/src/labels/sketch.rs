@@ -8,9 +8,11 @@ use super::joined;
 use super::junctions::{self, Meeting};
 use super::legs;
 use super::look::Look;
+use super::narrowed;
 use super::racks::{self, Row};
 use super::rooms::{Bar, Space};
 use super::turned::Turned;
+use super::whole;
 use super::widths;
 use super::{Evidence, Ground};
 use crate::bands::{Later, Side, each, map_each};
@@ -35,8 +37,6 @@ const FACING: f64 = 0.5;
 /// What the map shows without its faces.
 pub struct Sketch {
     pub views: Vec<Turned>,
-    /// Racks that stand on legs.
-    pub on_legs: Vec<Row>,
     pub plan: Plan,
     pub free: Free,
 }
@@ -97,15 +97,15 @@ impl Sketch {
     /// Beside what is still being made of it.
     pub fn beside(evidence: &Evidence, sight: Sight<Later<Free>>) -> Self {
         let Sight { look, views, on_legs, free } = sight;
-        let plan = Plan::of(evidence, &look, &views);
-        Self { views, on_legs, plan, free: free.get() }
+        let plan = Plan::of(evidence, &look, &views, &on_legs);
+        Self { views, plan, free: free.get() }
     }
 
     /// From what is seen.
     pub fn new(evidence: &Evidence, sight: Sight<Free>) -> Self {
         let Sight { look, views, on_legs, free } = sight;
-        let plan = Plan::of(evidence, &look, &views);
-        Self { views, on_legs, plan, free }
+        let plan = Plan::of(evidence, &look, &views, &on_legs);
+        Self { views, plan, free }
     }
 }
 
@@ -118,11 +118,13 @@ pub struct Plan {
     /// Where each corridor begins and ends, along, with its junctions.
     pub extents: Vec<[f64; 2]>,
     pub rows: Vec<Row>,
+    /// The racks, of which not all are such rows.
+    pub racks: Vec<Row>,
 }
 
 impl Plan {
-    fn of(evidence: &Evidence, look: &Look, views: &[Turned]) -> Self {
-        let found = joined::join(views, corridors::find(evidence, views));
+    fn of(evidence: &Evidence, look: &Look, views: &[Turned], on_legs: &[Row]) -> Self {
+        let found = joined::join(views, corridors::find(evidence, views), evidence.parameters.labels_min_width);
         let found = gates::without_bays(evidence, look, views, found);
         let mut plan = Self::new(views, found);
         let gates = gates::find(evidence, look, views, &plan.strips, &plan.rows);
@@ -132,7 +134,17 @@ impl Plan {
         if more > 0 || plan.strips.len() < known {
             plan = Self::new(views, plan.strips);
         }
+        plan.racks = plan.find_racks(views, on_legs);
+        let narrow = narrowed::past(views, &plan.strips, &plan.racks, evidence.parameters.labels_min_width);
+        if narrow != plan.strips {
+            plan = Self::new(views, narrow);
+            plan.racks = plan.find_racks(views, on_legs);
+        }
         plan
+    }
+
+    fn find_racks(&self, views: &[Turned], on_legs: &[Row]) -> Vec<Row> {
+        whole::find(views, &self.strips, &self.extents, &self.rows, on_legs)
     }
 
     fn new(views: &[Turned], strips: Vec<Strip>) -> Self {
@@ -149,7 +161,7 @@ impl Plan {
             extents[n][side] = place;
         }
         let rows = racks::find(views, &strips, &extents);
-        Self { strips, meetings, ends, extents, rows }
+        Self { strips, meetings, ends, extents, rows, racks: Vec::new() }
     }
 }
 

@@ -12,7 +12,6 @@ use super::racks::Row;
 use super::rooms::{self, Racked, Raster};
 use super::sketch::{Plan, Sketch};
 use super::turned::Turned;
-use super::whole;
 use super::{Division, Evidence, JunctionKind, Label, outline};
 use crate::bands::side_by_side;
 use crate::grid::{State, tidy};
@@ -23,10 +22,8 @@ const RIM: f64 = 0.4;
 
 /// The labels that a sketch shows, with the faces that lie in them.
 pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Label> {
-    let Sketch { mut views, on_legs, plan, free } = sketch;
-    let Plan { strips, meetings, ends, extents, rows } = plan;
-    let between = rows;
-    let rows = whole::find(&views, &strips, &extents, &between, &on_legs);
+    let Sketch { mut views, plan, free } = sketch;
+    let Plan { strips, meetings, ends, extents, rows: between, racks: rows } = plan;
 
     // A face is of one junction at most, and of one corridor.
     let mut faces = Faces::new(division, |state| state == State::Free);

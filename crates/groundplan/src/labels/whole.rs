@@ -20,6 +20,8 @@ const FLOOR: f64 = 0.6;
 const TAKEN: f64 = 0.25;
 const OVER: usize = 1;
 
+/// Rows by their depths are asked for the nearest on either side, so many.
+const KIN: usize = 2;
 /// A shell has a face that is closed over that share of its length, within so far, metres; so far behind its faces more
 /// than the other share of it is unknown, or than the last where no floor is seen before its other face. Between goods
 /// something of a rack's inside shows.
@@ -32,7 +34,7 @@ const HIDDEN: f64 = 0.4;
 /// The racks of a place, of which those that stand on legs are known.
 pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], rows: &[Row], on_legs: &[Row]) -> Vec<Row> {
     let mut known = without_walls(views, rows);
-    if racks::are_here(&known, extents) {
+    if racks::are_here(&known, extents) && racks::are_here(&of_a_kind(&known), extents) {
         let at_walls = at_walls::find(views, strips, extents, &known);
         known.extend(at_walls);
     } else {
@@ -63,6 +65,19 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], rows: &[Ro
     let mut weighed: Vec<(f64, Row)> = found.into_iter().zip(met).map(weigh).collect();
     weighed.extend(blocks.into_iter().map(|row| (SEEN_BOTH * row.length(), row)));
     heaviest(views, weighed)
+}
+
+/// Rows between two corridors, and of those beside one those as deep as another: racks of a place come in kinds, rooms and
+/// what nobody saw beside a corridor do not.
+fn of_a_kind(rows: &[Row]) -> Vec<Row> {
+    let mut by_depth: Vec<&Row> = rows.iter().collect();
+    by_depth.sort_by(|a, b| a.depth().total_cmp(&b.depth()));
+    let has_kin = |row: &&Row| {
+        let at = by_depth.partition_point(|other| other.depth() < row.depth());
+        let near = by_depth[at.saturating_sub(KIN)..].iter().take(2 * KIN);
+        row.between.is_some() || near.filter(|other| are_alike(row, other)).count() > 1
+    };
+    rows.iter().filter(has_kin).cloned().collect()
 }
 
 /// Rows without those that are walls for all that is seen: closed all along, nothing known between, and none of the kind
@@ -138,4 +153,19 @@ fn followed(view: &Turned, crossings: &Crossings, row: &Row) -> Row {
     };
     let along = [reach(row.along[0], -1.0, limits[0]), reach(row.along[1], 1.0, limits[1])];
     trimmed(view, &Row { along, ..row.clone() }, row.across).unwrap_or_else(|| row.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_beside_one_way_are_of_a_kind_where_another_row_is_as_deep() {
+        let row = |depth: f64, between| Row { direction: 0, along: [0.0, 9.0], across: [1.0, 1.0 + depth], between };
+        let depths = |rows: &[Row]| of_a_kind(rows).iter().map(Row::depth).collect::<Vec<_>>();
+        let rooms = [row(1.75, None), row(2.9, None), row(3.5, None)];
+        assert_eq!(depths(&rooms), []);
+        let racks = [row(1.0, None), row(2.25, Some([0, 1])), row(1.125, None), row(3.5, None)];
+        assert_eq!(depths(&racks), [1.0, 2.25, 1.125]);
+    }
 }

@@ -1,0 +1,62 @@
+"""An aisle is whole, however much of a wall is missing along it, and as wide as what stands along it leaves of it."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import groundplan
+
+RESOLUTION = 0.05
+
+
+def shelves_across(reach: float) -> npt.NDArray[np.uint8]:
+    """A hall of 20 m by 30 m with two racks of 20 m, and in the 7.6 m between the last of them and the wall shelves of
+    0.6 m that reach so far from it."""
+    picture = np.full((640, 440), 205, np.uint8)
+    picture[18:622, 18:422] = 0
+    picture[20:620, 20:420] = 254
+    for x in (108, 228):
+        picture[140:540, x : x + 40] = 0
+        picture[142:538, x + 2 : x + 38] = 205
+    draws = np.random.default_rng(2)
+    for y in (220, 300, 380):
+        shelf = picture[y : y + 12, 420 - int(reach / RESOLUTION) : 420]
+        shelf[draws.random(shelf.shape) < 0.4] = 0
+        shelf[[0, -1]] = 0
+    return picture
+
+
+@pytest.mark.parametrize("reach", [2.5, 3.5])
+def test_an_aisle_between_a_rack_and_the_ends_of_shelves_is_as_wide_as_they_leave_it(reach: float) -> None:
+    survey = groundplan.survey(shelves_across(reach), resolution=RESOLUTION)
+    assert len(survey.of_kind("rack")) == 5
+    (aisle,) = (label for label in survey.of_kind("corridor") if min(x for x, _ in label["axis"]) > 14.0)
+    assert aisle["width"] == pytest.approx(7.6 - reach, abs=0.2)
+
+
+def along_goods(gap: int) -> npt.NDArray[np.uint8]:
+    """A way of 4.4 m between walls for 11 m that goes on, so many pixels further, for 30 m, 3.2 m wide or more, between
+    goods at any depth; between the two a hall opens on both sides."""
+    draws = np.random.default_rng(1)
+    picture = np.full((240, 860 + gap), 205, np.uint8)
+    picture[74:166, 18:242] = 0
+    picture[20:220, 240 : 840 + gap] = 254
+    picture[76:164, 20:242] = 254
+    for side in (-1, 1):
+        x = 240 + gap
+        while x < 830 + gap:
+            width = int(draws.integers(14, 30))
+            near, far = 120 + side * int(draws.integers(32, 39)), 120 + side * 102
+            picture[min(near, far) : max(near, far), x : x + width] = 205
+            picture[min(near, far) : max(near, far), [x, min(x + width, 839 + gap)]] = 0
+            picture[near - 1 : near + 1, x : x + width] = 0
+            x += width + int(draws.integers(4, 14))
+    return picture
+
+
+@pytest.mark.parametrize("gap", [60, 140, 205])
+def test_an_aisle_goes_on_across_a_hall_that_is_three_times_as_long_as_it_is_wide(gap: int) -> None:
+    (aisle,) = groundplan.survey(along_goods(gap), resolution=RESOLUTION).of_kind("corridor")
+    assert abs(np.subtract(*aisle["axis"])[0]) == pytest.approx(41.0 + gap * RESOLUTION, abs=2.0)
