@@ -79,6 +79,21 @@ def test_goods_on_some_of_the_floor_under_the_racks_change_nothing() -> None:
     assert counts(hall(29.6, 19.4, boxes())) == {"rack": 4, "corridor": 7, "junction": 10, "pillar": 0}
 
 
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_racks_are_whole_though_every_seventh_leg_was_not_seen(seed: int) -> None:
+    draws = np.random.default_rng(seed)
+    boxes = (box for n in range(4) for box in legs(4.0, 3.0 + 4.1 * n, 8, 1.1, 2.7) if draws.random() > 1 / 7)
+    picture = hall(29.6, 19.4, boxes, 5.0 * seed)
+    assert counts(picture) == {"rack": 4, "corridor": 7, "junction": 10, "pillar": 0}
+
+
+def test_legs_of_one_pixel_of_a_coarse_map_are_racks_too() -> None:
+    # Half as large at half the pixel.
+    boxes = (box for n in range(4) for box in legs(2.0, 1.5 + 2.05 * n, 8, 0.55, 1.35, 0.05))
+    survey = groundplan.survey(hall(14.8, 9.7, boxes, 7.0), resolution=2 * RESOLUTION)
+    assert len(survey.of_kind("rack")) == 4 and len(survey.of_kind("corridor")) == 7
+
+
 def test_racks_back_to_back_are_one() -> None:
     def boxes() -> Iterator[Box]:
         for n in range(3):

@@ -160,6 +160,11 @@ fn is_as_long(one: &Row, two: &Row) -> bool {
     (1.0 / LONGER..=LONGER).contains(&(one.length() / two.length()))
 }
 
+/// True when a row is long enough for a rack, and for its depth.
+pub fn is_oblong(row: &Row) -> bool {
+    row.length() >= OBLONG.0.max(OBLONG.1 * row.depth())
+}
+
 fn gap(one: [f64; 2], two: [f64; 2]) -> f64 {
     one[0].max(two[0]) - one[1].min(two[1])
 }

@@ -35,8 +35,8 @@ impl Frame {
     }
 }
 
-/// The frames that uprights make across a heading, by their places along it.
-pub fn frames(uprights: &[Upright], [cos, sin]: [f64; 2]) -> Vec<Frame> {
+/// The frames that uprights make across a heading, by their places along it, and all legs.
+pub fn frames(uprights: &[Upright], [cos, sin]: [f64; 2]) -> (Vec<Frame>, Legs) {
     let mut frames = Vec::new();
     let mut all = Vec::new();
     for upright in uprights {
@@ -52,11 +52,11 @@ pub fn frames(uprights: &[Upright], [cos, sin]: [f64; 2]) -> Vec<Frame> {
     let legs = Legs::new(&all);
     frames.extend(all.iter().filter_map(|&leg| legs.frame(leg)));
     frames.sort_by(|a, b| a.at.total_cmp(&b.at));
-    frames
+    (frames, legs)
 }
 
 /// Legs by columns as wide as they may be off, of each the places across, ascending, and along.
-struct Legs(BTreeMap<i64, Vec<[f64; 2]>>);
+pub struct Legs(BTreeMap<i64, Vec<[f64; 2]>>);
 
 impl Legs {
     fn new(legs: &[[f64; 2]]) -> Self {
@@ -72,6 +72,17 @@ impl Legs {
 
     fn column(u: f64) -> i64 {
         (u / NEAR).floor() as i64
+    }
+
+    /// True when a leg of a frame stands at a place along, be the other one not seen.
+    pub fn stand_at(&self, u: f64, faces: [f64; 2]) -> bool {
+        let own = Self::column(u);
+        self.0.range(own - 1..=own + 1).any(|(_, column)| {
+            faces.iter().any(|face| {
+                let first = column.partition_point(|leg| leg[0] < face - NEAR);
+                column[first..].iter().take_while(|leg| leg[0] <= face + NEAR).any(|leg| (leg[1] - u).abs() <= NEAR)
+            })
+        })
     }
 
     /// The nearest in line with a leg on one side of it, no further off than an aisle is wide.

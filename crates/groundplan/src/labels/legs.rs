@@ -3,7 +3,8 @@
 //! follow one another at one pitch with the same two faces are a rack, where there is another of the kind.
 
 use super::Evidence;
-use super::frames::{AISLE, BACK, Frame, NEAR, frames};
+use super::blocks;
+use super::frames::{AISLE, BACK, Frame, Legs, NEAR, frames};
 use super::racks::Row;
 use super::uprights;
 use crate::grid::State;
@@ -12,6 +13,8 @@ use std::collections::BTreeMap;
 /// From frame to frame, metres, and in depths at least.
 const PITCH: [f64; 2] = [0.9, 4.5];
 const OBLONG: f64 = 0.7;
+/// Of the gaps from frame to frame the one that so many times as many are no less than is the pitch: frames may be missing.
+const QUARTER: usize = 4;
 /// So many frames make what may be a rack, and so many of a kind are racks: one may be a long table.
 const FRAMES: usize = 3;
 const KIND: usize = 2;
@@ -42,10 +45,10 @@ pub fn find(evidence: &Evidence) -> Vec<Row> {
     let mut racks: Vec<Rack> = Vec::new();
     for (direction, &angle) in evidence.directions.angles.iter().enumerate() {
         let heading = [libm::cos(angle), libm::sin(angle)];
-        let frames = frames(&uprights, heading);
+        let (frames, legs) = frames(&uprights, heading);
         let map = Map { evidence, heading };
-        let mut found: Vec<Rack> = in_rows(&frames).into_iter().map(|row| rack(direction, &row)).collect();
-        found.retain(|rack| map.shows_floor(&rack.row));
+        let mut found: Vec<Rack> = in_rows(&frames, &legs).iter().map(|row| rack(direction, row, &legs)).collect();
+        found.retain(|rack| blocks::is_oblong(&rack.row) && map.shows_floor(&rack.row));
         let found = back_to_back(found);
         let mut found: Vec<Rack> = found.iter().filter(|rack| is_kind(rack, &found)).cloned().collect();
         let leaning: Vec<Rack> = frames.iter().filter_map(|frame| leaning(&map, &found, &frames, frame)).collect();
@@ -74,7 +77,7 @@ fn holds_middle(evidence: &Evidence, row: &Row, other: &Row) -> bool {
 }
 
 /// Frames that follow one another at one pitch.
-fn in_rows(frames: &[Frame]) -> Vec<Vec<Frame>> {
+fn in_rows(frames: &[Frame], legs: &Legs) -> Vec<Vec<Frame>> {
     // By strips as wide as legs may be off.
     let strip = |frame: &Frame| (frame.faces[0] / NEAR).floor() as i64;
     let mut strips: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
@@ -100,29 +103,49 @@ fn in_rows(frames: &[Frame]) -> Vec<Vec<Frame>> {
             taken[other] = true;
             row.push(other);
         }
-        rows.extend(at_one_pitch(&row.iter().map(|&n| frames[n]).collect::<Vec<_>>()));
+        rows.extend(at_one_pitch(&row.iter().map(|&n| frames[n]).collect::<Vec<_>>(), legs));
     }
     rows
 }
 
-/// The pieces of a row of frames whose gaps are alike.
-fn at_one_pitch(row: &[Frame]) -> Vec<Vec<Frame>> {
+/// The pieces of a row of frames whose gaps are alike, but for frames of which one leg was not seen.
+fn at_one_pitch(row: &[Frame], legs: &Legs) -> Vec<Vec<Frame>> {
     let gap = |pair: &[Frame]| pair[1].at - pair[0].at;
     let mut gaps: Vec<f64> = row.windows(2).map(gap).collect();
     gaps.sort_by(f64::total_cmp);
-    let Some(&pitch) = gaps.get(gaps.len() / 2) else { return Vec::new() };
+    let Some(&pitch) = gaps.get(gaps.len() / QUARTER) else { return Vec::new() };
     if !(PITCH[0].max(OBLONG * row[0].depth())..=PITCH[1]).contains(&pitch) {
         return Vec::new();
     }
-    let pieces = row.chunk_by(|a, b| (b.at - a.at - pitch).abs() <= NEAR);
+    let is_next = |a: &Frame, b: &Frame| {
+        let bays = ((b.at - a.at) / pitch).round();
+        let is_whole = (b.at - a.at - bays * pitch).abs() <= NEAR;
+        let mut between = (1..bays as usize).map(|n| a.at + (b.at - a.at) * n as f64 / bays);
+        is_whole && between.all(|at| legs.stand_at(at, a.faces))
+    };
+    let pieces = row.chunk_by(is_next);
     pieces.filter(|piece| piece.len() >= FRAMES).map(<[Frame]>::to_vec).collect()
 }
 
-fn rack(direction: usize, row: &[Frame]) -> Rack {
-    let (first, last) = (row[0], row[row.len() - 1]);
+/// The rack of some frames, with those at its ends of which one leg was not seen.
+fn rack(direction: usize, row: &[Frame], legs: &Legs) -> Rack {
+    let mut gaps: Vec<f64> = row.windows(2).map(|pair| pair[1].at - pair[0].at).collect();
+    gaps.sort_by(f64::total_cmp);
+    let [first, last] = [row[0].at, row[row.len() - 1].at];
+    let bays = ((last - first) / gaps[gaps.len() / QUARTER]).round().max(1.0);
+    let pitch = (last - first) / bays;
     let mean = |face: usize| row.iter().map(|frame| frame.faces[face]).sum::<f64>() / row.len() as f64;
-    let row_of = Row { direction, along: [first.at, last.at], across: [mean(0), mean(1)], between: None };
-    Rack { row: row_of, pitch: (last.at - first.at) / (row.len() - 1) as f64, frames: row.len() }
+    let across = [mean(0), mean(1)];
+    let beyond = |from: f64, by: f64| {
+        let mut off = 0.0;
+        while legs.stand_at(from + off + by, across) {
+            off += by;
+        }
+        off
+    };
+    let along = [first + beyond(first, -pitch), last + beyond(last, pitch)];
+    let frames = ((along[1] - along[0]) / pitch).round() as usize + 1;
+    Rack { row: Row { direction, along, across, between: None }, pitch, frames }
 }
 
 /// The rack that a frame is of which stands beside another one and has frames at its places, but for some that are lost
