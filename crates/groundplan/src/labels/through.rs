@@ -62,7 +62,8 @@ const STEP: f64 = 0.1;
 const ALIKE: f64 = 0.05;
 const FIRST: f64 = 0.01;
 const OTHER: f64 = 0.005;
-/// The same where there are more rows at that place: of those that lie side by side there are many.
+/// The same where there are more rows at that place, as of those that lie side by side there are many, and where it has
+/// another width than those and a bay's.
 const SOME: f64 = 0.0005;
 
 /// The rows of a place, and where each is open.
@@ -196,6 +197,7 @@ impl<'a> Through<'a> {
             (false, _) => SOME,
             (true, true) => ALIKE,
             (true, false) if known.is_empty() => FIRST,
+            (true, false) if self.rows[common.rows[0]].is_as_bays(common.ends) => SOME,
             (true, false) => OTHER,
         };
         common.chance < limit
@@ -227,6 +229,12 @@ impl Seen<'_> {
     fn along(&self, across: f64) -> f64 {
         let [view, other] = self.views;
         view.crossing(other, self.middle(), across)[1]
+    }
+
+    /// True when a stretch is as wide as a bay, or as some beside one another.
+    fn is_as_bays(&self, ends: [f64; 2]) -> bool {
+        let [one, two] = ends.map(|end| self.along(end));
+        self.columns.is_as_bays([one.min(two), one.max(two)])
     }
 
     /// True when a stretch goes on beyond an end of the row.
