@@ -184,6 +184,13 @@ impl<'a> Grid<'a> {
         let lies = if self.bottom_up { y - self.first } else { self.first + self.count - 1 - y };
         &self.pixels[lies * width..(lies + 1) * width]
     }
+
+    /// What is at a point of the map frame; nothing is known beyond the map.
+    pub(crate) fn state_at(&self, point: [f64; 2]) -> State {
+        let [x, y] = self.frame.to_pixels(point);
+        let is_inside = (0.0..self.frame.width as f64).contains(&x) && (0.0..self.frame.height as f64).contains(&y);
+        if is_inside { self.table.states[usize::from(self.row(y as usize)[x as usize])] } else { State::Unknown }
+    }
 }
 
 /// A directed angle, in [-pi, pi).

@@ -2,15 +2,14 @@
 //! to 1 (nothing against it). Each kind has its own question; the map itself is asked, not the steps that led to the
 //! label, so that two ways to find a label are held to one measure.
 
+use super::looks::{Looks, STEP, along, frame_of};
 use super::{Evidence, JunctionKind, Label};
 use crate::bands::map_each;
-use crate::grid::{Grid, State};
+use crate::grid::State;
 use crate::subdivision::distance;
 
 /// So many labels are worth a thread's while.
 const TOGETHER: usize = 32;
-/// Looks are this far apart, metres.
-const STEP: f64 = 0.2;
 /// A side's structure lies from so far within a corridor to so far outside it, metres.
 const SIDE: [f64; 2] = [-0.2, 0.4];
 /// The middle part of a way's width in which it must be free.
@@ -26,6 +25,8 @@ const WIDER: f64 = 3.0;
 const FRONT: f64 = 0.4;
 /// Faces more solid than this are more and more like walls.
 const SOLID: f64 = 0.85;
+/// Less of a rack than this is taken where there is floor under it: then its posts are looked for.
+const HOLLOW: f64 = 0.5;
 /// Floor shows round a pillar at this distance from its faces, metres.
 const ROUND: f64 = 0.3;
 
@@ -46,40 +47,14 @@ pub fn find_confidence(evidence: &Evidence, labels: &[Label]) -> Vec<f64> {
     map_each(parts.len(), evidence.threads, |n| parts[n].iter().map(rounded).collect::<Vec<_>>()).concat()
 }
 
-/// The map, asked point by point.
-struct Looks<'a> {
-    grid: &'a Grid<'a>,
-}
-
 impl Looks<'_> {
-    fn state(&self, point: [f64; 2]) -> State {
-        let frame = &self.grid.frame;
-        let [x, y] = frame.to_pixels(point);
-        if x < 0.0 || y < 0.0 || x >= frame.width as f64 || y >= frame.height as f64 {
-            return State::Unknown;
-        }
-        self.grid.table.states[usize::from(self.grid.row(y as usize)[x as usize])]
-    }
-
-    fn is_free(&self, point: [f64; 2]) -> bool {
-        self.state(point) == State::Free
-    }
-
-    /// Free share of a line across a way.
-    fn open(&self, at: [f64; 2], across: [f64; 2], width: f64) -> f64 {
-        let count = (width / STEP).ceil().max(1.0);
-        let offsets = (0..count as usize).map(|n| ((n as f64 + 0.5) / count - 0.5) * width);
-        let free = offsets.filter(|v| self.is_free([at[0] + v * across[0], at[1] + v * across[1]])).count();
-        free as f64 / count
-    }
-
     /// Free along its middle, and structure along both sides: of an empty rack posts are enough, as long as they come
     /// again and again.
     fn corridor(&self, axis: [[f64; 2]; 2], width: f64) -> f64 {
         let [_, across] = frame_of(axis);
         let mut free = 0.0;
         let mut walled = [0.0; 2];
-        let places = along(axis);
+        let places = along(axis, STEP);
         for &at in &places {
             free += self.open(at, across, MIDDLE * width);
             for (side, share) in [-1.0, 1.0].into_iter().zip(&mut walled) {
@@ -146,7 +121,7 @@ impl Looks<'_> {
         for (n, &from) in polygon.iter().enumerate() {
             let side = [from, polygon[(n + 1) % polygon.len()]];
             let [_, [nx, ny]] = frame_of(side);
-            for [x, y] in along(side) {
+            for [x, y] in along(side, STEP) {
                 all += 1;
                 // Counter-clockwise: outside is on the right.
                 let pixel = self.grid.frame.resolution;
@@ -183,11 +158,11 @@ impl Looks<'_> {
         1.0 - width / beside(1.0).min(beside(-1.0)).max(width)
     }
 
-    /// Something stands in it all along, and both its faces were seen: of what lies behind a face that was not, nobody
-    /// knows where it ends.
+    /// Something stands in it all along, or posts come back at one pitch on both its faces where there is floor between
+    /// them, and both its faces were seen: of what lies behind a face that was not, nobody knows where it ends.
     fn rack(&self, axis: [[f64; 2]; 2], width: f64) -> f64 {
         let [_, across] = frame_of(axis);
-        let places = along(axis);
+        let places = along(axis, STEP);
         let taken: f64 = places.iter().map(|&at| (2.0 * (1.0 - self.open(at, across, width))).min(1.0)).sum();
         let seen = [-1.0, 1.0].map(|side| {
             let is_seen = |at: &&[f64; 2]| {
@@ -197,13 +172,16 @@ impl Looks<'_> {
             places.iter().filter(is_seen).count() as f64
         });
         let solid = [-1.0, 1.0].map(|side| {
-            let is_solid = |at: &&[f64; 2]| {
-                let near = (-4..=4).map(|n| side * width / 2.0 + f64::from(n) * 0.05);
-                near.into_iter().any(|v| self.state([at[0] + v * across[0], at[1] + v * across[1]]) == State::Occupied)
-            };
+            let is_solid = |at: &&[f64; 2]| self.is_taken(**at, across, side * width / 2.0);
             places.iter().filter(is_solid).count() as f64
         });
         let count = places.len() as f64;
+        let taken = if taken < HOLLOW * count {
+            let posts = [-1.0, 1.0].map(|side| self.posts(axis, side * width / 2.0));
+            taken.max(count * posts[0].min(posts[1]))
+        } else {
+            taken
+        };
         // Goods and posts leave gaps; two faces without any may be walls with nothing known between.
         let walls = ((solid[0].min(solid[1]) / count - SOLID) / (1.0 - SOLID)).max(0.0);
         (1.0 - walls / 2.0) * taken / count * f64::midpoint(1.0, seen[0].min(seen[1]) / count) * seen[0].max(seen[1])
@@ -217,17 +195,4 @@ impl Looks<'_> {
         let free = ring.filter(|a| self.is_free([at[0] + radius * libm::cos(*a), at[1] + radius * libm::sin(*a)]));
         free.count() as f64 / 32.0
     }
-}
-
-/// Unit vectors along a straight piece and to its left.
-fn frame_of([from, to]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
-    let length = distance(from, to).max(1e-9);
-    let [x, y] = [0, 1].map(|n| (to[n] - from[n]) / length);
-    [[x, y], [-y, x]]
-}
-
-/// Places along a straight piece, in the middles of equal steps.
-fn along([from, to]: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
-    let count = (distance(from, to) / STEP).round().max(1.0);
-    (0..count as usize).map(|n| [0, 1].map(|k| from[k] + (to[k] - from[k]) * (n as f64 + 0.5) / count)).collect()
 }

@@ -181,10 +181,8 @@ struct Map<'a> {
 
 impl Map<'_> {
     fn state(&self, [u, v]: [f64; 2]) -> State {
-        let (grid, [cos, sin]) = (self.evidence.grid, self.heading);
-        let [x, y] = grid.frame.to_pixels([u * cos - v * sin, u * sin + v * cos]);
-        let is_inside = (0.0..grid.frame.width as f64).contains(&x) && (0.0..grid.frame.height as f64).contains(&y);
-        if is_inside { grid.table.states[usize::from(grid.row(y as usize)[x as usize])] } else { State::Unknown }
+        let [cos, sin] = self.heading;
+        self.evidence.grid.state_at([u * cos - v * sin, u * sin + v * cos])
     }
 
     /// True when something stands across so much of a row's depth at a place along it.

@@ -14,6 +14,7 @@ mod joined;
 mod junctions;
 mod legs;
 mod look;
+mod looks;
 mod mouths;
 mod names;
 mod narrowed;
