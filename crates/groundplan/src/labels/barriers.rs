@@ -1,7 +1,8 @@
 //! Walls across a strip that leave no more than a door: a corridor ends there, and a room behind is no part of it.
 
 use super::runs::runs;
-use super::turned::{Shares, Turned};
+use super::shares::Shares;
+use super::turned::Turned;
 use std::ops::Range;
 
 /// Such a wall bars more than this share of the strip.

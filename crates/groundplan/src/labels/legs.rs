@@ -103,13 +103,15 @@ fn in_rows(frames: &[Frame], legs: &Legs) -> Vec<Vec<Frame>> {
             taken[other] = true;
             row.push(other);
         }
-        rows.extend(at_one_pitch(&row.iter().map(|&n| frames[n]).collect::<Vec<_>>(), legs));
+        rows.extend(at_one_pitch(row.iter().map(|&n| frames[n]).collect(), legs));
     }
     rows
 }
 
 /// The pieces of a row of frames whose gaps are alike, but for frames of which one leg was not seen.
-fn at_one_pitch(row: &[Frame], legs: &Legs) -> Vec<Vec<Frame>> {
+fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs) -> Vec<Vec<Frame>> {
+    // A plate and the legs that it joins are one frame.
+    row.dedup_by(|next, frame| next.at - frame.at <= NEAR);
     let gap = |pair: &[Frame]| pair[1].at - pair[0].at;
     let mut gaps: Vec<f64> = row.windows(2).map(gap).collect();
     gaps.sort_by(f64::total_cmp);
@@ -237,4 +239,20 @@ fn is_kind(rack: &Rack, all: &[Rack]) -> bool {
         (other.row.depth() - depth).abs() <= NEAR && (other.pitch - rack.pitch).abs() <= ALIKE * rack.pitch
     };
     all.iter().filter(alike).take(KIND).count() == KIND
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_at_one_place_are_one_and_the_rack_of_them_ends() {
+        let frame = |at: f64| Frame { at, faces: [0.0, 1.1] };
+        let (_, legs) = frames(&[], [1.0, 0.0]);
+        let places = [0.0, 0.0, 0.1, 2.0, 2.0, 4.0, 4.05, 6.0];
+        let rows = at_one_pitch(places.map(frame).to_vec(), &legs);
+        assert_eq!(rows.len(), 1);
+        let rack = rack(0, &rows[0], &legs);
+        assert_eq!((rack.frames, rack.pitch, rack.row.along), (4, 2.0, [0.0, 6.0]));
+    }
 }

@@ -7,10 +7,11 @@
 use super::beside::Beside;
 use super::corridors::{self, Strip, UNTOLD};
 use super::runs::{best_pieces, close};
+use super::shares::Shares;
 use super::sums::What;
 use super::sweep::Sweep;
-use super::turned::{IMPASSABLE, Shares, Turned};
-use super::{Evidence, barriers};
+use super::turned::{IMPASSABLE, Turned};
+use super::{Evidence, barriers, pieces};
 use std::ops::Range;
 
 /// Widths are tried in such steps, and places across in such shares of the width.
@@ -45,7 +46,7 @@ const LEAST_SEEN: f64 = 0.3;
 const LEAST_FACED: f64 = 0.2;
 /// Up to so many pitches of the rows that it crosses it may lie over empty bays, from row to row: so much holds on both
 /// sides then.
-const BAY: f64 = corridors::BAY_WIDTH.1;
+const BAY: f64 = pieces::BAY_WIDTH.1;
 const LEAST_BOTH_BAY: f64 = 0.8;
 /// A way that shares more than this of its width with a known one is none.
 const SHARED: f64 = 0.25;

@@ -6,7 +6,8 @@
 use super::look::{BLOCKED, Look};
 use super::racks::Row;
 use super::runs::runs;
-use super::turned::{Shares, Turned};
+use super::shares::Shares;
+use super::turned::Turned;
 use crate::grid::Frame;
 
 /// A way is so wide, metres.

@@ -2,12 +2,14 @@
 //! where structure lies on each line.
 
 use super::Evidence;
+use super::grounds::Grounds;
 use super::look::{LANES, Look};
 use super::on_line::OnLine;
 use super::racks::Row;
 use super::recall::Key;
+use super::shares::Shares;
 use super::summed::{Part, Summed};
-use super::sums::{Cells, Rows, Source, Told, What};
+use super::sums::{Cells, Source, Told, What};
 use crate::bits::Bits;
 use crate::radiograms::weight;
 use std::ops::Range;
@@ -23,9 +25,6 @@ const NEAR: (f64, f64) = (0.12, 2.0);
 /// Lines with less structure than this, metres, and than this share of a strong line's, are no sides of corridors but
 /// the faces of single goods.
 const STRONG: (f64, f64) = (2.0, 0.08);
-
-/// The sides of what stands across the direction, or nearly, are so much off it at most.
-const ASKEW: f64 = 0.02;
 
 /// Nothing gets through where more than this share is not free, or more than this is barred by a wall, be it thin.
 pub const IMPASSABLE: f64 = 0.7;
@@ -59,8 +58,8 @@ pub struct Turned {
     pub touched: Arc<Vec<Bits>>,
     /// What is told of each row of cells.
     pub rows: Arc<Vec<Told>>,
-    /// Corners of racks that stand on legs, whose ground is taken.
-    on_legs: Vec<Vec<[f64; 2]>>,
+    /// Racks that stand on legs, whose ground is taken.
+    grounds: Grounds,
     /// Keys of the view without its rows and lines, and of its lines.
     keys: (Key, Arc<Vec<Key>>),
 }
@@ -102,10 +101,10 @@ impl Turned {
             covered: Arc::default(),
             touched: Arc::default(),
             rows: Arc::default(),
-            on_legs: Vec::new(),
+            grounds: Grounds::default(),
             keys: (Key::default(), Arc::default()),
         };
-        made.stand(evidence, on_legs);
+        made.grounds = Grounds::new(evidence, &made, on_legs);
         made.cover_lines(evidence);
         made
     }
@@ -143,7 +142,7 @@ impl Turned {
             covered: Arc::clone(&self.covered),
             touched: Arc::clone(&self.touched),
             rows: Arc::clone(&self.rows),
-            on_legs: Vec::new(),
+            grounds: Grounds::default(),
             keys: (self.keys.0, Arc::clone(&self.keys.1)),
             ..*self
         })
@@ -174,10 +173,7 @@ impl Turned {
             let lanes = [lane(rows.start * samples), lane(rows.end * samples - 1)];
             let key = look.key(lanes, steps[0], self.size[0] * samples).with(rows.len() as u64).with(samples as u64);
             let [low, high] = [rows.start, rows.end].map(|n| self.start[1] + n as f64 * self.cell);
-            let lies_there = |corners: &&Vec<[f64; 2]>| {
-                corners.iter().any(|corner| corner[1] >= low) && corners.iter().any(|corner| corner[1] <= high)
-            };
-            self.on_legs.iter().filter(lies_there).flatten().flatten().copied().fold(key, Key::number)
+            self.grounds.key(key, &rows, [low, high])
         };
         let (seen, recall) = (self.seen(evidence, look), evidence.recall);
         Cells::new(self.size, self.samples.pow(2) as u16, seen, Source { make, key }, recall, evidence.threads)
@@ -201,22 +197,10 @@ impl Turned {
         Part { columns: part(0), rows: part(1) }
     }
 
-    /// Takes the ground of racks that stand on legs, which is of no state of its own in the map.
-    fn stand(&mut self, evidence: &Evidence, racks: &[Row]) {
-        let corners = |rack: &Row| {
-            let angle = evidence.directions.angles[rack.direction];
-            let [cos, sin] = [libm::cos(angle), libm::sin(angle)];
-            let to_map = |[u, v]: [f64; 2]| [u * cos - v * sin, u * sin + v * cos];
-            rectangle(rack.along, rack.across).map(|corner| self.place(to_map(corner))).to_vec()
-        };
-        self.on_legs = racks.iter().map(corners).collect();
-    }
-
-    /// In a row of cells, from some column on, those whose middles lie in a rack that stands on legs.
+    /// In a row of cells, from some column on, takes those whose middles lie in a rack that stands on legs.
     fn take(&self, n: usize, first: usize, row: &mut [u8]) {
         let v = self.start[1] + (n as f64 + 0.5) * self.cell;
-        for corners in &self.on_legs {
-            let Some([from, to]) = crossed(corners, v) else { continue };
+        for [from, to] in self.grounds.at(n, v) {
             let column = |u: f64| ((u - self.start[0]) / self.cell + 0.5).max(0.0) as usize;
             let within = column(from).max(first)..column(to).min(first + row.len());
             let taken = self.samples.pow(2) as u8;
@@ -234,7 +218,7 @@ impl Turned {
             .collect();
         offsets.sort_by(f64::total_cmp);
         let near = NEAR.0.max(NEAR.1 * frame.resolution);
-        let sides = self.sides_on_legs();
+        let sides = self.grounds.sides();
         for &(offset, _) in &sides {
             let at = offsets.partition_point(|&other| other < offset);
             let others = &offsets[at.saturating_sub(1)..offsets.len().min(at + 1)];
@@ -271,14 +255,6 @@ impl Turned {
         }
         self.offsets = Arc::new(offsets);
         (self.covered, self.touched) = (Arc::new(covered), Arc::new(touched));
-    }
-
-    /// The sides of racks on legs that lie along the direction: where they are across, and from where to where along.
-    fn sides_on_legs(&self) -> Vec<(f64, [f64; 2])> {
-        let sides =
-            self.on_legs.iter().flat_map(|corners| (0..corners.len()).map(|n| [corners[n], corners[(n + 1) % 4]]));
-        let along = sides.filter(|[a, b]| (a[1] - b[1]).abs() <= ASKEW * (a[0] - b[0]).abs());
-        along.map(|[a, b]| (f64::midpoint(a[1], b[1]), [a[0].min(b[0]), a[0].max(b[0])])).collect()
     }
 
     /// Keys of the view and of its lines.
@@ -460,91 +436,11 @@ impl Turned {
     }
 }
 
-/// Of how many samples of each column something is true.
-pub struct Shares<'a> {
-    rows: Rows<'a>,
-    /// Samples of a column.
-    count: u32,
-}
-
-impl Shares<'_> {
-    /// Of so many samples of a column.
-    pub fn at(&self, column: usize) -> u32 {
-        self.rows.at(column)
-    }
-
-    /// The first of some columns with so many.
-    pub fn first(&self, columns: Range<usize>, least: u32) -> Option<usize> {
-        self.rows.first(columns, least)
-    }
-
-    /// The last of some columns with so many.
-    pub fn last(&self, columns: Range<usize>, least: u32) -> Option<usize> {
-        self.rows.last(columns, least)
-    }
-
-    /// The stretches of so many columns at least in none of which so many samples are, and none of which is a rival's.
-    pub fn open(&self, within: Range<usize>, least: usize, closed: u32, rivals: &[Range<usize>]) -> Vec<Range<usize>> {
-        let count = within.end;
-        let mut stretches = Vec::new();
-        let mut from = within.start;
-        while from + least <= count {
-            // From its far end, so that most columns are never asked.
-            let of_rival = |rival: &Range<usize>| (rival.start.max(from)..rival.end.min(from + least)).last();
-            let last = self.last(from..from + least, closed);
-            if let Some(last) = last.max(rivals.iter().filter_map(of_rival).max()) {
-                from = last + 1;
-                continue;
-            }
-            let ahead = |rival: &Range<usize>| (rival.start.max(from + least)..rival.end.min(count)).next();
-            let next = self.first(from + least..count, closed);
-            let to = next.into_iter().chain(rivals.iter().filter_map(ahead)).min().unwrap_or(count);
-            stretches.push(from..to);
-            from = to + 1;
-        }
-        stretches
-    }
-
-    /// The same of a range of columns.
-    pub fn over(&self, columns: Range<usize>) -> Vec<u32> {
-        self.rows.over(columns)
-    }
-
-    /// Which of a range of columns have so many.
-    pub fn reached(&self, columns: Range<usize>, least: u32) -> Vec<bool> {
-        self.rows.reached(columns, least)
-    }
-
-    /// What share so many samples are. Where there is no sample the share is all.
-    pub fn share(&self, samples: u32) -> f64 {
-        if self.count == 0 { 1.0 } else { f64::from(samples) / f64::from(self.count) }
-    }
-
-    /// The least number of samples whose share is as much as is asked for.
-    pub fn least(&self, is_enough: impl Fn(f64) -> bool) -> u32 {
-        let (mut low, mut high) = (0, self.count + 1);
-        while low < high {
-            let middle = low.midpoint(high);
-            if is_enough(self.share(middle)) { high = middle } else { low = middle + 1 }
-        }
-        low
-    }
-}
-
 fn is_closed(blocked: f64, barred: f64) -> bool {
     blocked > IMPASSABLE || barred > BARRED
 }
 
 /// The corners of a rectangle of places, counter-clockwise.
-fn rectangle(along: [f64; 2], across: [f64; 2]) -> [[f64; 2]; 4] {
+pub fn rectangle(along: [f64; 2], across: [f64; 2]) -> [[f64; 2]; 4] {
     [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[u, v]| [along[u], across[v]])
-}
-
-/// From where to where a convex polygon holds a line along at a place across.
-fn crossed(corners: &[[f64; 2]], v: f64) -> Option<[f64; 2]> {
-    let sides = (0..corners.len()).map(|n| [corners[n], corners[(n + 1) % corners.len()]]);
-    let met = sides.filter(|[a, b]| (a[1] <= v) != (b[1] <= v));
-    let places = met.map(|[a, b]| a[0] + (b[0] - a[0]) * (v - a[1]) / (b[1] - a[1]));
-    let ends = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], u| [low.min(u), high.max(u)]);
-    (ends[0] < ends[1]).then_some(ends)
 }

@@ -1,0 +1,261 @@
+//! The lines of one direction as sides of strips, and the best of the strips between them.
+
+use super::Evidence;
+use super::beside::{Beside, wider};
+use super::columns::{BAY, Side};
+use super::corridors::{Strip, UNTOLD, pitches};
+use super::pieces::{BESIDE, INNER};
+use super::recall::{Key, Recall};
+use super::sums::What;
+use super::sweep::Sweep;
+use super::turned::Turned;
+use crate::parameters::Parameters;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The gap of a missing post, in pitches.
+const MISSING: f64 = 2.1;
+/// A side with less than this share of structure on it cannot part two corridors.
+const DENSE: f64 = 0.6;
+/// What aisles open into side by side, so many at least, is so many times as wide as they are.
+const LEAST_MOUTHS: usize = 2;
+const LED_TO: f64 = 0.65;
+/// And so much of its side between them has structure on it.
+const BETWEEN: f64 = 0.5;
+/// Strips that overlap across by more than this share of the narrower one are rivals.
+const RIVAL: f64 = 0.25;
+
+/// The lines of one direction as sides of strips.
+pub struct Family<'a> {
+    pub view: &'a Turned,
+    /// Between the lines of posts of the rows that cross, metres: a strip as wide may be a row of empty bays.
+    pub pitches: Vec<f64>,
+    /// True when racks stand in the place: somewhere bays recur.
+    pub racked: bool,
+    pub parameters: &'a Parameters,
+    pub sides: Arc<Vec<Side>>,
+}
+
+/// A strip between two lines, in little room: of a large map there are millions, of which few stay.
+#[derive(Clone, Copy)]
+pub struct Candidate {
+    /// The two lines.
+    sides: [u32; 2],
+    /// From column to column.
+    columns: [u32; 2],
+    score: f64,
+    bays: bool,
+    /// As a whole.
+    pub is_corridor: bool,
+}
+
+impl Candidate {
+    fn new(view: &Turned, sides: [usize; 2], strip: &Strip, is_corridor: bool) -> Self {
+        let columns = strip.along.map(|u| view.border(u) as u32);
+        Self { sides: sides.map(|n| n as u32), columns, score: strip.score, bays: strip.bays, is_corridor }
+    }
+
+    fn strip(&self, view: &Turned) -> Strip {
+        let along = self.columns.map(|column| view.along(column as usize));
+        Strip {
+            direction: view.direction,
+            along,
+            across: self.sides.map(|n| view.offsets[n as usize]),
+            score: self.score,
+            bays: self.bays,
+            is_ragged: false,
+            held: UNTOLD,
+        }
+    }
+}
+
+impl<'a> Family<'a> {
+    /// With what is known of the mouths of others in each line, or nothing.
+    pub fn new(evidence: &Evidence<'a>, views: &[Turned], view: &'a Turned, mouths: &[Vec<Range<usize>>]) -> Self {
+        let racked = views.iter().any(|view| view.pitch.is_some());
+        // Where the bays are known, one post may be missing.
+        let bay = view.pitch.map_or(BAY, |pitch| BAY.max(MISSING * pitch));
+        Self {
+            pitches: pitches(views, view),
+            racked,
+            view,
+            parameters: evidence.parameters,
+            sides: Arc::new(
+                (0..view.offsets.len())
+                    .map(|n| Side::new(view, n, bay, racked, mouths.get(n).map_or(&[], Vec::as_slice)))
+                    .collect(),
+            ),
+        }
+    }
+
+    /// The same in a view that has some rows at hand.
+    fn seen_in<'v>(&self, view: &'v Turned) -> Family<'v>
+    where
+        'a: 'v,
+    {
+        Family { view, pitches: self.pitches.clone(), sides: Arc::clone(&self.sides), ..*self }
+    }
+
+    /// Over the lower lines of strips.
+    fn sweep(&self) -> Sweep<'_> {
+        let around = [BESIDE.1, self.parameters.labels_max_width + BESIDE.1];
+        Sweep { view: self.view, places: &self.view.offsets, around, what: &[What::Blocked, What::Barred] }
+    }
+
+    /// The strips between every two lines that are a corridor's width apart.
+    pub fn candidates(&self, threads: usize, recall: &Recall) -> Vec<Candidate> {
+        let view = self.view;
+        self.sweep().find(1, threads, |near, low, found| {
+            for high in low + 1..view.offsets.len() {
+                let across = [view.offsets[low], view.offsets[high]];
+                let width = across[1] - across[0];
+                if width > self.parameters.labels_max_width {
+                    break;
+                }
+                if width >= self.parameters.labels_min_width {
+                    let sides = [low, high];
+                    let pieces = recall.strips.or_find(
+                        || self.key(across),
+                        || {
+                            let own = self.seen_in(near.view());
+                            let pieces = |open: Range<usize>| {
+                                let columns = own.columns(sides, open.clone());
+                                own.pieces(&columns, open.start, across)
+                            };
+                            own.open(across).into_iter().flat_map(pieces).collect()
+                        },
+                    );
+                    found.extend(pieces.iter().map(|(strip, whole)| Candidate::new(view, sides, strip, *whole)));
+                }
+            }
+        })
+    }
+
+    /// The key of all that strips between two lines are found from.
+    fn key(&self, across: [f64; 2]) -> Key {
+        let key = self.view.key(across, BESIDE.1).with(u64::from(self.racked));
+        self.pitches.iter().copied().fold(key, Key::number)
+    }
+
+    /// The corridors into which others open side by side.
+    pub fn before_mouths(&self, mouths: &[Vec<Range<usize>>], threads: usize, recall: &Recall) -> Vec<Candidate> {
+        let view = self.view;
+        self.sweep().find(1, threads, |near, low, found| {
+            for high in low + 1..view.offsets.len() {
+                let (across, sides) = ([view.offsets[low], view.offsets[high]], [low, high]);
+                let width = across[1] - across[0];
+                if width > self.parameters.labels_max_width {
+                    break;
+                }
+                let led_to = |strip: &Strip| sides.iter().any(|&side| self.is_led_to(strip, side, &mouths[side]));
+                let may_be = |columns: &Range<usize>| {
+                    sides.iter().any(|&side| self.opening(&mouths[side], width, columns).count() >= LEAST_MOUTHS)
+                };
+                if width < self.parameters.labels_min_width || !may_be(&(0..view.size[0])) {
+                    continue;
+                }
+                let key = || {
+                    let mouths = sides.map(|side| &mouths[side]);
+                    let key = self.key(across).with(mouths[0].len() as u64).with(mouths[1].len() as u64);
+                    let ends = mouths.into_iter().flatten().flat_map(|mouth| [mouth.start, mouth.end]);
+                    ends.fold(key, |key, end| key.with(end as u64))
+                };
+                let strips = recall.strips.or_find(key, || {
+                    let own = self.seen_in(near.view());
+                    let strips = |open: Range<usize>| {
+                        let columns = own.columns(sides, open.clone());
+                        own.strips(&columns, open.start, across)
+                    };
+                    let open = own.open(across).into_iter().filter(may_be);
+                    open.flat_map(strips).filter(led_to).map(|strip| (strip, true)).collect()
+                });
+                found.extend(strips.iter().map(|(strip, whole)| Candidate::new(view, sides, strip, *whole)));
+            }
+        })
+    }
+
+    /// The mouths within some columns that may open into a strip so wide: beside wide aisles, what is narrow is in a row.
+    fn opening<'m>(
+        &self,
+        mouths: &'m [Range<usize>],
+        width: f64,
+        columns: &Range<usize>,
+    ) -> impl Iterator<Item = &'m Range<usize>> {
+        let (cell, columns) = (self.view.cell, columns.clone());
+        let within = move |mouth: &&Range<usize>| columns.start < mouth.end && mouth.start < columns.end;
+        mouths.iter().filter(within).filter(move |mouth| width >= LED_TO * (mouth.len() as f64 * cell))
+    }
+
+    /// True when mouths of a side open into a strip side by side, with structure between them, and none is much wider.
+    fn is_led_to(&self, strip: &Strip, side: usize, mouths: &[Range<usize>]) -> bool {
+        let (from, to) = self.range(strip);
+        let open: Vec<_> = mouths.iter().filter(|mouth| from < mouth.end && mouth.start < to).collect();
+        let all_may = self.opening(mouths, strip.width(), &(from..to)).count() == open.len();
+        let between: Vec<usize> = (from..to).filter(|c| !open.iter().any(|mouth| mouth.contains(c))).collect();
+        let held = between.iter().filter(|&&c| self.sides[side].near.get(c)).count();
+        open.len() >= LEAST_MOUTHS && all_may && held as f64 >= BETWEEN * between.len() as f64
+    }
+
+    /// Of rivals the best, and what they and those that are known leave of the others.
+    pub fn best(&self, mut candidates: Vec<Candidate>, known: &[Strip]) -> Vec<Strip> {
+        candidates.sort_by(|a, b| a.bays.cmp(&b.bays).then(b.score.total_cmp(&a.score)));
+        let mut kept = known.to_vec();
+        let mut placed = Beside::of(self.view);
+        let mut next = 0;
+        for candidate in candidates {
+            for strip in &kept[next..] {
+                placed.add(next, strip.along, strip.across);
+                next += 1;
+            }
+            let strip = candidate.strip(self.view);
+            let (first, last) = self.range(&strip);
+            let left = self.left(&strip, &kept, &placed);
+            if !left.is_empty() {
+                let columns = self.columns(candidate.sides.map(|n| n as usize), first..last);
+                for range in left {
+                    let own = &columns[range.start - first..range.end - first];
+                    kept.extend(self.strips(own, range.start, strip.across));
+                }
+            }
+        }
+        kept.split_off(known.len())
+    }
+
+    /// The columns of a strip.
+    fn range(&self, strip: &Strip) -> (usize, usize) {
+        let half = self.view.cell / 2.0;
+        (self.view.column(strip.along[0] + half), self.view.column(strip.along[1] - half) + 1)
+    }
+
+    /// What stronger rivals, of which it is known where they lie, leave of a strip's columns.
+    fn left(&self, strip: &Strip, kept: &[Strip], placed: &Beside) -> Vec<Range<usize>> {
+        let (from, to) = self.range(strip);
+        let mut left = vec![(from, to)];
+        let near = placed.touching(wider(strip.along, self.view.cell), wider(strip.across, INNER));
+        for rival in near.into_iter().map(|n| &kept[n]) {
+            let cut = self.range(rival);
+            if cut.1 <= from || to <= cut.0 {
+                continue;
+            }
+            let shared = strip.across[1].min(rival.across[1]) - strip.across[0].max(rival.across[0]);
+            let beside = shared.abs() < INNER && !self.parts(strip, rival);
+            if shared > RIVAL * strip.width().min(rival.width()) || beside {
+                let pieces = left.into_iter().flat_map(|(a, b)| [(a, b.min(cut.0)), (a.max(cut.1), b)]);
+                left = pieces.filter(|(a, b)| a < b).collect();
+            }
+        }
+        left.into_iter().map(|(a, b)| a..b).collect()
+    }
+
+    /// True when enough structure lies between two strips side by side to part them.
+    fn parts(&self, one: &Strip, two: &Strip) -> bool {
+        let (below, above) = if one.middle() < two.middle() { (one, two) } else { (two, one) };
+        let border = [below.across[1], above.across[0]];
+        let (low, high) = (border[0].min(border[1]) - 1e-6, border[0].max(border[1]) + 1e-6);
+        let lines = &self.sides[self.view.lines(low, high)];
+        let (p, q) = (self.range(one), self.range(two));
+        let (from, to) = (p.0.max(q.0), p.1.min(q.1));
+        let structure = (from..to).filter(|&c| lines.iter().any(|line| line.faces.get(c))).count();
+        from < to && structure as f64 >= DENSE * (to - from) as f64
+    }
+}
