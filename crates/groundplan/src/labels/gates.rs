@@ -27,7 +27,9 @@ const BEYOND: f64 = 2.0;
 /// The ways through the rows between corridors, as strips of the direction that crosses them.
 pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], rows: &[Row]) -> Vec<Strip> {
     let (mut gates, mut doubtful) = (Vec::new(), Vec::new());
-    let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, row)).collect();
+    let placed = placed(views, strips.iter().map(Strip::place));
+    let widest = strips.iter().map(Strip::width).fold(0.0, f64::max);
+    let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, &placed, widest, row)).collect();
     let mut seen = Vec::new();
     for (row, reaching) in rows.iter().zip(&reaching) {
         let (Some(between), Some(other)) = (row.between, crossing(views, row.direction)) else { continue };
@@ -60,14 +62,15 @@ fn is_in(one: &Strip, two: &Strip) -> bool {
 
 /// A row with what lies beyond its ends up to the walls there, which both ways beside it end at, if that may be a way
 /// and no other is there.
-fn up_to_walls(views: &[Turned], strips: &[Strip], row: &Row) -> Row {
+fn up_to_walls(views: &[Turned], strips: &[Strip], placed: &[Beside], widest: f64, row: &Row) -> Row {
     let mut reaching = row.clone();
     let (Some([below, above]), Some(other)) = (row.between, crossing(views, row.direction)) else { return reaching };
     let view = &views[row.direction];
     let middle = f64::midpoint(row.across[0], row.across[1]);
     let [low, high] = [strips[below].across[0], strips[above].across[1]];
+    let near = leading_across([view, other], placed, row, widest);
     let is_crossed = |u: f64| {
-        strips.iter().filter(|strip| strip.direction == other.direction).any(|strip| {
+        near.iter().map(|&n| &strips[n]).any(|strip| {
             let [s, at] = view.crossing(other, middle, strip.middle());
             (strip.along[0]..=strip.along[1]).contains(&s) && (at - u).abs() < strip.width()
         })
@@ -126,7 +129,7 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: 
 
 /// Of strips by their directions and places those along another direction that may lead across a row; none is wider than
 /// the widest.
-fn leading_across([view, other]: [&Turned; 2], placed: &[Beside], row: &Row, widest: f64) -> Vec<usize> {
+pub fn leading_across([view, other]: [&Turned; 2], placed: &[Beside], row: &Row, widest: f64) -> Vec<usize> {
     // So far beyond a row's ends the middle of what meets its corner may cross it, at a sine of a half or more.
     let reach = widest + row.depth();
     let corners = view.rectangle(wider(row.along, reach), row.across);

@@ -9,6 +9,7 @@ use super::racks::Row;
 use super::sections::{Columns, WIDTH};
 use super::turned::Turned;
 use super::widths::Widths;
+use std::collections::BTreeMap;
 
 /// A row and what stands in it.
 pub struct Seen<'a> {
@@ -36,11 +37,6 @@ struct Common {
 }
 
 impl Common {
-    fn is_beside(&self, other: &Self) -> bool {
-        let shared = self.ends[1].min(other.ends[1]) - self.ends[0].max(other.ends[0]);
-        shared > 0.0 && self.rows.iter().any(|row| other.rows.contains(row))
-    }
-
     fn width(&self) -> f64 {
         self.ends[1] - self.ends[0]
     }
@@ -71,8 +67,9 @@ pub struct Through<'a> {
     rows: Vec<Seen<'a>>,
     /// For each row, across the direction that crosses it.
     open: Vec<Vec<[f64; 2]>>,
-    /// For each row those above it, with which it shares a corridor.
+    /// For each row those above it and below it, with which it shares a corridor.
     above: Vec<Vec<usize>>,
+    below: Vec<Vec<usize>>,
     /// For each direction and each width in steps, how many places of its rows are open, and of how many.
     all: Vec<Vec<[f64; 2]>>,
 }
@@ -80,11 +77,15 @@ pub struct Through<'a> {
 impl<'a> Through<'a> {
     pub fn new(rows: Vec<Seen<'a>>, directions: usize) -> Self {
         let open: Vec<_> = rows.iter().map(Seen::open).collect();
-        let is_above =
-            |one: &Seen, two: &Seen| one.row.direction == two.row.direction && one.between[1] == two.between[0];
-        let above = |one: &Seen| (0..rows.len()).filter(|&m| is_above(one, &rows[m])).collect();
-        let above = rows.iter().map(above).collect();
-        let mut made = Self { rows, open, above, all: vec![Vec::new(); directions] };
+        // A corridor is of one direction, and so are the rows beside it.
+        let mut beside: BTreeMap<usize, [Vec<usize>; 2]> = BTreeMap::new();
+        for (n, Seen { between: [below, above], .. }) in rows.iter().enumerate() {
+            beside.entry(*above).or_default()[0].push(n);
+            beside.entry(*below).or_default()[1].push(n);
+        }
+        let next = |side: usize| rows.iter().map(|row| beside[&row.between[side]][side].clone()).collect();
+        let (below, above) = (next(0), next(1));
+        let mut made = Self { rows, open, above, below, all: vec![Vec::new(); directions] };
         made.count();
         made
     }
@@ -98,12 +99,18 @@ impl<'a> Through<'a> {
             }
         }
         let mut ways: Vec<Common> = Vec::new();
+        // From where to where they lead through each row.
+        let mut taken: Vec<Vec<[f64; 2]>> = vec![Vec::new(); self.rows.len()];
+        let is_taken = |taken: &[Vec<[f64; 2]>], common: &Common| {
+            common.rows.iter().any(|&row| taken[row].iter().any(|&ends| shared(ends, common.ends) > 0.0))
+        };
         // What is known to be a way is no longer what chance makes, and others are as wide.
         loop {
             left.sort_by(|a, b| a.chance.total_cmp(&b.chance));
             let known = ways.len();
             for common in &left {
-                if self.is_way(common, widths) && !ways.iter().any(|way| way.is_beside(common)) {
+                if self.is_way(common, widths) && !is_taken(&taken, common) {
+                    common.rows.iter().for_each(|&row| taken[row].push(common.ends));
                     ways.push(common.clone());
                 }
             }
@@ -115,7 +122,7 @@ impl<'a> Through<'a> {
                 self.take(way);
             }
             self.count();
-            left.retain(|common| !ways[known..].iter().any(|way| way.is_beside(common)));
+            left.retain(|common| !is_taken(&taken, common));
             for common in &mut left {
                 common.chance = self.chance(&common.rows, common.ends);
             }
@@ -207,9 +214,13 @@ impl<'a> Through<'a> {
     fn is_whole(&self, common: &Common) -> bool {
         let middle = f64::midpoint(common.ends[0], common.ends[1]);
         let (first, last) = (common.rows[0], common.rows[common.rows.len() - 1]);
-        let is_next = |n: usize| self.above[last].contains(&n) || self.above[n].contains(&first);
-        !(0..self.rows.len()).any(|n| is_next(n) && self.rows[n].holds(middle))
+        !self.above[last].iter().chain(&self.below[first]).any(|&n| self.rows[n].holds(middle))
     }
+}
+
+/// How much two stretches share.
+fn shared(one: [f64; 2], two: [f64; 2]) -> f64 {
+    one[1].min(two[1]) - one[0].max(two[0])
 }
 
 impl Seen<'_> {

@@ -1,8 +1,8 @@
 //! Ways across rows are of one width: what leads through all rows of a place tells what leads through some of them.
 
-use super::beside::{placed, wider};
+use super::beside::{Beside, placed, wider};
 use super::corridors::Strip;
-use super::gates::crossing;
+use super::gates::{crossing, leading_across};
 use super::racks::{self, Row};
 use super::turned::Turned;
 
@@ -56,7 +56,7 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
         let aisles: Vec<Strip> = (0..strips.len()).filter(is_aisle).map(|n| strips[n].clone()).collect();
         let extents: Vec<[f64; 2]> = aisles.iter().map(|strip| strip.along).collect();
         let rows = racks::between(views, &aisles, &extents);
-        let through = Crossed::of_each([view, other], &strips, &aisles, &rows);
+        let through = Crossed::of_each([view, other], &strips, &placed, &aisles, &rows);
         let whole = |n: &usize| through[*n].rows >= 2 && !through[*n].goes_on;
         let known = Widths((0..strips.len()).filter(whole).map(|n| strips[n].width()).collect());
         for (n, crossed) in through.iter().enumerate() {
@@ -80,34 +80,41 @@ struct Crossed {
 
 impl Crossed {
     /// Of each strip, where the rows lie between aisles, along which it is not.
-    fn of_each(views: [&Turned; 2], strips: &[Strip], aisles: &[Strip], rows: &[Row]) -> Vec<Self> {
+    fn of_each(views: [&Turned; 2], strips: &[Strip], placed: &[Beside], aisles: &[Strip], rows: &[Row]) -> Vec<Self> {
         let [view, other] = views;
-        // For each strip the corridors beside the rows that it crosses, and beside those that it would if it went on.
-        let mut beside: Vec<[Vec<[usize; 2]>; 2]> = vec![Default::default(); strips.len()];
-        let mut rest: Vec<f64> = strips.iter().map(Strip::length).collect();
-        for row in rows {
-            let Some(between) = row.between else { continue };
+        let widest = strips.iter().map(Strip::width).fold(0.0, f64::max);
+        // Where a strip would cross a row if it were as long: along the strip, if it is none of the aisles' own kind.
+        let place = |n: usize, row: &Row, between: [usize; 2]| {
+            let strip = &strips[n];
             let shorter = between.map(|n| aisles[n].length()).into_iter().fold(f64::INFINITY, f64::min);
-            let middle = f64::midpoint(row.across[0], row.across[1]);
-            for (n, strip) in strips.iter().enumerate() {
-                if strip.direction != other.direction || strip.length() >= shorter {
-                    continue;
-                }
-                let [s, u] = view.crossing(other, middle, strip.middle());
-                let [from, to] = wider(row.along, strip.width());
-                if (from..=to).contains(&u) {
-                    let is_crossed = (strip.along[0]..=strip.along[1]).contains(&s);
-                    beside[n][usize::from(!is_crossed)].push(between);
-                    if is_crossed {
-                        rest[n] -= aisles[between[1]].middle() - aisles[between[0]].middle();
-                    }
+            if strip.direction != other.direction || strip.length() >= shorter {
+                return None;
+            }
+            let [s, u] = view.crossing(other, f64::midpoint(row.across[0], row.across[1]), strip.middle());
+            let [from, to] = wider(row.along, strip.width());
+            (from..=to).contains(&u).then_some(s)
+        };
+        let crosses = |n: usize, s: f64| (strips[n].along[0]..=strips[n].along[1]).contains(&s);
+        let rows: Vec<(&Row, [usize; 2])> = rows.iter().filter_map(|row| Some((row, row.between?))).collect();
+        // The rows above and below each aisle.
+        let mut beside: Vec<[Vec<usize>; 2]> = vec![Default::default(); aisles.len()];
+        let mut crossed: Vec<Vec<usize>> = vec![Vec::new(); strips.len()];
+        for (m, &(row, between)) in rows.iter().enumerate() {
+            beside[between[0]][0].push(m);
+            beside[between[1]][1].push(m);
+            for n in leading_across(views, placed, row, widest) {
+                if place(n, row, between).is_some_and(|s| crosses(n, s)) {
+                    crossed[n].push(m);
                 }
             }
         }
-        let crossed = |([own, others], rest): ([Vec<[usize; 2]>; 2], f64)| {
-            let is_next = |one: &[usize; 2]| own.iter().any(|two| one[0] == two[1] || one[1] == two[0]);
-            Self { rows: own.len(), rest, goes_on: others.iter().any(is_next) }
+        let of_strip = |(n, own): (usize, &Vec<usize>)| {
+            let through = |&m: &usize| aisles[rows[m].1[1]].middle() - aisles[rows[m].1[0]].middle();
+            let rest = own.iter().map(through).fold(strips[n].length(), |rest, through| rest - through);
+            let mut next = own.iter().flat_map(|&m| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]));
+            let goes_on = next.any(|&m| place(n, rows[m].0, rows[m].1).is_some_and(|s| !crosses(n, s)));
+            Self { rows: own.len(), rest, goes_on }
         };
-        beside.into_iter().zip(rest).map(crossed).collect()
+        crossed.iter().enumerate().map(of_strip).collect()
     }
 }
