@@ -3,8 +3,9 @@
 Simulated halls, each of its own kind, stand side by side on 200 x 200 m; larger maps are so many of these as they have
 room for. Each is a PGM, read by memory map and surveyed with the defaults in a process of its own. Linux only. Ends
 with exit code 1 when a bar is missed: 1 GiB at 1600 megapixels, and for a pixel 1.3 times what one costs on 16.
-``bench/scale.py 16 64`` measures these sizes only, ``--threads 1`` on so many threads. With ``--dask`` each map is
-surveyed by four worker processes on this machine too, and the bytes of that survey are held to those from one thread.
+``bench/scale.py 16 64`` measures these sizes only, ``--threads 1`` on so many threads. With ``--write`` each map is
+surveyed once more and the survey written. With ``--dask`` each map is surveyed by four worker processes on this machine
+too, and the bytes of that survey are held to those from one thread.
 """
 
 from __future__ import annotations
@@ -52,6 +53,8 @@ print("ready", flush=True)
 sys.stdin.readline()
 since, cpu = time.perf_counter(), time.process_time()
 survey = groundplan.survey(map, threads=int(sys.argv[3]) or None)
+if sys.argv[4]:
+    survey.write(sys.argv[4])
 spent = time.perf_counter() - since, time.process_time() - cpu
 counts = [int(re.search(rf"(\\d+) {what}", repr(survey))[1]) for what in ("lines", "faces", "labels")]
 print(json.dumps([*spent, *counts]), flush=True)
@@ -78,9 +81,12 @@ def write(path: Path, one: npt.NDArray[np.uint8], side: int) -> None:
             wide[: side - row].tofile(file)
 
 
-def measure(path: Path, threads: int) -> tuple[list[float], int]:
-    """Seconds, seconds of all cores, lines, faces and labels; and the most memory beyond what was held before."""
-    said, most = watched(["-c", CHILD, str(path), str(RESOLUTION), str(threads)])
+def measure(path: Path, threads: int, out: str = "") -> tuple[list[float], int]:
+    """Seconds, seconds of all cores, lines, faces and labels; and the most memory beyond what was held before.
+
+    With `out` the survey is written there, which is in the seconds and the memory.
+    """
+    said, most = watched(["-c", CHILD, str(path), str(RESOLUTION), str(threads), out])
     return json.loads(said), most
 
 
@@ -116,6 +122,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("sizes", nargs="*", type=int, default=SIZES, help="megapixels")
     parser.add_argument("--threads", type=int, default=0, help="as many as there are cores")
+    parser.add_argument(
+        "--write", action="store_true", help="survey each again and write survey.json, which takes more"
+    )
     parser.add_argument("--dask", action="store_true", help="hold the bytes from four workers to those from one thread")
     words = parser.parse_args()
     if not Path("/proc/self/status").exists():
@@ -135,6 +144,9 @@ def main() -> int:
             lines, faces, labels = (int(count) for count in counts)
             cost = f"{size:5}{seconds:9.2f}{cores:10.2f}{costs[size][0]:12.1f}{costs[size][1]:7.0f}"
             print(f"{cost}{lines:7}{faces:9}{labels:8}", flush=True)
+            if words.write:
+                (seconds, *_), most = measure(path, words.threads, str(Path(directory) / "survey.json"))
+                print(f"{'':5} with survey.json {seconds:.2f} s, {most / 2**20:.0f} MiB", flush=True)
             if words.dask:
                 many_s, one_s, same = on_four_workers(path)
                 missed |= not same

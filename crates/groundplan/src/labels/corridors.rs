@@ -57,6 +57,11 @@ impl Strip {
 /// Strips whose directions differ by an angle of a smaller sine run nearly the same way.
 const ASKEW: f64 = 0.5;
 
+/// The width of the widest, metres.
+pub fn widest(strips: &[Strip]) -> f64 {
+    strips.iter().map(Strip::width).fold(0.0, f64::max)
+}
+
 /// Corridors along every direction, in the order of the directions: of each those between lines by their places, and
 /// then the ragged ones, the best first.
 pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {

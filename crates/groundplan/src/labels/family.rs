@@ -102,31 +102,32 @@ impl<'a> Family<'a> {
         Sweep { view: self.view, places: &self.view.offsets, around, what: &[What::Blocked, What::Barred] }
     }
 
+    /// A line with each of those above it that are a corridor's width off, and the places across of both.
+    fn facing(&self, low: usize) -> impl Iterator<Item = ([usize; 2], [f64; 2])> {
+        let (view, parameters) = (self.view, self.parameters);
+        let width = |across: &[f64; 2]| across[1] - across[0];
+        let all = (low + 1..view.offsets.len()).map(move |high| ([low, high], [low, high].map(|n| view.offsets[n])));
+        all.take_while(move |(_, across)| width(across) <= parameters.labels_max_width)
+            .filter(move |(_, across)| width(across) >= parameters.labels_min_width)
+    }
+
     /// The strips between every two lines that are a corridor's width apart.
     pub fn candidates(&self, threads: usize, recall: &Recall) -> Vec<Candidate> {
         let view = self.view;
         self.sweep().find(1, threads, |near, low, found| {
-            for high in low + 1..view.offsets.len() {
-                let across = [view.offsets[low], view.offsets[high]];
-                let width = across[1] - across[0];
-                if width > self.parameters.labels_max_width {
-                    break;
-                }
-                if width >= self.parameters.labels_min_width {
-                    let sides = [low, high];
-                    let pieces = recall.strips.or_find(
-                        || self.key(across),
-                        || {
-                            let own = self.seen_in(near.view());
-                            let pieces = |open: Range<usize>| {
-                                let columns = own.columns(sides, open.clone());
-                                own.pieces(&columns, open.start, across)
-                            };
-                            own.open(across).into_iter().flat_map(pieces).collect()
-                        },
-                    );
-                    found.extend(pieces.iter().map(|(strip, whole)| Candidate::new(view, sides, strip, *whole)));
-                }
+            for (sides, across) in self.facing(low) {
+                let pieces = recall.strips.or_find(
+                    || self.key(across),
+                    || {
+                        let own = self.seen_in(near.view());
+                        let pieces = |open: Range<usize>| {
+                            let columns = own.columns(sides, open.clone());
+                            own.pieces(&columns, open.start, across)
+                        };
+                        own.open(across).into_iter().flat_map(pieces).collect()
+                    },
+                );
+                found.extend(pieces.iter().map(|(strip, whole)| Candidate::new(view, sides, strip, *whole)));
             }
         })
     }
@@ -141,17 +142,13 @@ impl<'a> Family<'a> {
     pub fn before_mouths(&self, mouths: &[Vec<Range<usize>>], threads: usize, recall: &Recall) -> Vec<Candidate> {
         let view = self.view;
         self.sweep().find(1, threads, |near, low, found| {
-            for high in low + 1..view.offsets.len() {
-                let (across, sides) = ([view.offsets[low], view.offsets[high]], [low, high]);
+            for (sides, across) in self.facing(low) {
                 let width = across[1] - across[0];
-                if width > self.parameters.labels_max_width {
-                    break;
-                }
                 let led_to = |strip: &Strip| sides.iter().any(|&side| self.is_led_to(strip, side, &mouths[side]));
                 let may_be = |columns: &Range<usize>| {
                     sides.iter().any(|&side| self.opening(&mouths[side], width, columns).count() >= LEAST_MOUTHS)
                 };
-                if width < self.parameters.labels_min_width || !may_be(&(0..view.size[0])) {
+                if !may_be(&(0..view.size[0])) {
                     continue;
                 }
                 let key = || {

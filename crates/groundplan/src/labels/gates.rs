@@ -3,7 +3,7 @@
 
 use super::Evidence;
 use super::beside::{Beside, placed, wider};
-use super::corridors::{Strip, UNTOLD};
+use super::corridors::{self, Strip, UNTOLD};
 use super::look::Look;
 use super::racks::{self, Row};
 use super::sections::{Columns, Free, WIDTH};
@@ -28,7 +28,7 @@ const BEYOND: f64 = 2.0;
 pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], rows: &[Row]) -> Vec<Strip> {
     let (mut gates, mut doubtful) = (Vec::new(), Vec::new());
     let placed = placed(views, strips.iter().map(Strip::place));
-    let widest = strips.iter().map(Strip::width).fold(0.0, f64::max);
+    let widest = corridors::widest(strips);
     let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, &placed, widest, row)).collect();
     let mut seen = Vec::new();
     for (row, reaching) in rows.iter().zip(&reaching) {
@@ -99,7 +99,7 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: 
     // Where a direction does not tell its own bays, they are as those of the others.
     let common = views.iter().find_map(|view| view.pitch);
     let placed = placed(views, strips.iter().map(Strip::place));
-    let widest = strips.iter().map(Strip::width).fold(0.0, f64::max);
+    let widest = corridors::widest(&strips);
     for view in views.iter().filter(|_| common.is_some()) {
         let Some(other) = crossing(views, view.direction) else { continue };
         // The rows as they were if nothing led across them.

@@ -22,12 +22,7 @@ pub struct Grounds {
 
 impl Grounds {
     pub fn new(evidence: &Evidence, view: &Turned, racks: &[Row]) -> Self {
-        let corners = |rack: &Row| {
-            let angle = evidence.directions.angles[rack.direction];
-            let [cos, sin] = [libm::cos(angle), libm::sin(angle)];
-            let to_map = |[u, v]: [f64; 2]| [u * cos - v * sin, u * sin + v * cos];
-            rectangle(rack.along, rack.across).map(|corner| view.place(to_map(corner)))
-        };
+        let corners = |rack: &Row| on_map(evidence, rack).map(|corner| view.place(corner));
         let corners: Vec<_> = racks.iter().map(corners).collect();
         let mut near = vec![Vec::new(); if racks.is_empty() { 0 } else { view.size[1] / ROWS + 1 }];
         for (n, corners) in (0u32..).zip(&corners) {
@@ -61,6 +56,13 @@ impl Grounds {
             self.corners.iter().flat_map(sides).filter(|[a, b]| (a[1] - b[1]).abs() <= ASKEW * (a[0] - b[0]).abs());
         along.map(|[a, b]| (f64::midpoint(a[1], b[1]), [a[0].min(b[0]), a[0].max(b[0])])).collect()
     }
+}
+
+/// The corners of a row in the map frame, counter-clockwise.
+pub fn on_map(evidence: &Evidence, row: &Row) -> [[f64; 2]; 4] {
+    let angle = evidence.directions.angles[row.direction];
+    let [cos, sin] = [libm::cos(angle), libm::sin(angle)];
+    rectangle(row.along, row.across).map(|[u, v]| [u * cos - v * sin, u * sin + v * cos])
 }
 
 fn sides(corners: &[[f64; 2]; 4]) -> [[[f64; 2]; 2]; 4] {

@@ -1,6 +1,6 @@
 //! II-E: junctions, where corridors meet; their type is the number of ways out.
 
-use super::corridors::Strip;
+use super::corridors::{self, Strip};
 use super::near::Near;
 use super::turned::Turned;
 use super::{JunctionKind, barriers};
@@ -61,7 +61,7 @@ const SQUARE_DEG: f64 = 55.0;
 /// Junctions of the corridors, in the order of the corridors.
 pub fn find(views: &[Turned], strips: &[Strip]) -> Vec<Meeting> {
     // Where two may meet both their centre lines lead, each from as far as it may.
-    let widest = strips.iter().map(Strip::width).fold(0.0, f64::max);
+    let widest = corridors::widest(strips);
     let near = SHORT + widest / 2.0 / LEAST_SINE;
     let lines: Vec<_> = strips
         .iter()

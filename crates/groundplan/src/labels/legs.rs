@@ -5,6 +5,8 @@
 use super::Evidence;
 use super::blocks;
 use super::frames::{AISLE, BACK, Frame, Legs, NEAR, frames};
+use super::grounds::on_map;
+use super::near::Near;
 use super::racks::Row;
 use super::uprights;
 use crate::grid::State;
@@ -57,14 +59,19 @@ pub fn find(evidence: &Evidence) -> Vec<Row> {
     }
     // Legs of more than one direction's racks are of that which has most of them in a row.
     racks.sort_by_key(|rack| std::cmp::Reverse(rack.frames));
-    let mut kept: Vec<Row> = Vec::new();
-    for Rack { row, .. } in racks {
-        let others = kept.iter().filter(|other| other.direction != row.direction);
-        if !others.into_iter().any(|other| holds_middle(evidence, other, &row) || holds_middle(evidence, &row, other)) {
-            kept.push(row);
-        }
+    let rows: Vec<Row> = racks.into_iter().map(|rack| rack.row).collect();
+    let corners: Vec<_> = rows.iter().map(|row| on_map(evidence, row).to_vec()).collect();
+    let near = Near::polygons(&corners);
+    let mut stays = vec![false; rows.len()];
+    for (n, row) in rows.iter().enumerate() {
+        let is_same = |m: u32| {
+            let other = &rows[m as usize];
+            let is_kept = stays[m as usize] && other.direction != row.direction;
+            is_kept && (holds_middle(evidence, other, row) || holds_middle(evidence, row, other))
+        };
+        stays[n] = !near.beside(&corners[n]).into_iter().any(is_same);
     }
-    kept
+    rows.into_iter().zip(stays).filter_map(|(row, stays)| stays.then_some(row)).collect()
 }
 
 /// True when a row holds the middle of another.
@@ -108,14 +115,18 @@ fn in_rows(frames: &[Frame], legs: &Legs) -> Vec<Vec<Frame>> {
     rows
 }
 
+/// From frame to frame, as it is where none is missing.
+fn gap(row: &[Frame]) -> Option<f64> {
+    let mut gaps: Vec<f64> = row.windows(2).map(|pair| pair[1].at - pair[0].at).collect();
+    gaps.sort_by(f64::total_cmp);
+    gaps.get(gaps.len() / QUARTER).copied()
+}
+
 /// The pieces of a row of frames whose gaps are alike, but for frames of which one leg was not seen.
 fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs) -> Vec<Vec<Frame>> {
     // A plate and the legs that it joins are one frame.
     row.dedup_by(|next, frame| next.at - frame.at <= NEAR);
-    let gap = |pair: &[Frame]| pair[1].at - pair[0].at;
-    let mut gaps: Vec<f64> = row.windows(2).map(gap).collect();
-    gaps.sort_by(f64::total_cmp);
-    let Some(&pitch) = gaps.get(gaps.len() / QUARTER) else { return Vec::new() };
+    let Some(pitch) = gap(&row) else { return Vec::new() };
     if !(PITCH[0].max(OBLONG * row[0].depth())..=PITCH[1]).contains(&pitch) {
         return Vec::new();
     }
@@ -131,10 +142,8 @@ fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs) -> Vec<Vec<Frame>> {
 
 /// The rack of some frames, with those at its ends of which one leg was not seen.
 fn rack(direction: usize, row: &[Frame], legs: &Legs) -> Rack {
-    let mut gaps: Vec<f64> = row.windows(2).map(|pair| pair[1].at - pair[0].at).collect();
-    gaps.sort_by(f64::total_cmp);
     let [first, last] = [row[0].at, row[row.len() - 1].at];
-    let bays = ((last - first) / gaps[gaps.len() / QUARTER]).round().max(1.0);
+    let bays = gap(row).map_or(1.0, |gap| ((last - first) / gap).round().max(1.0));
     let pitch = (last - first) / bays;
     let mean = |face: usize| row.iter().map(|frame| frame.faces[face]).sum::<f64>() / row.len() as f64;
     let across = [mean(0), mean(1)];

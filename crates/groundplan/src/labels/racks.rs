@@ -4,7 +4,7 @@
 //! where other corridors cross, and holds something.
 
 use super::beside::{Beside, placed, wider};
-use super::corridors::Strip;
+use super::corridors::{self, Strip};
 use super::near::Near;
 use super::turned::Turned;
 
@@ -127,7 +127,7 @@ impl<'a> Crossings<'a> {
             strips.iter().zip(extents).map(|(s, extent)| views[s.direction].rectangle(*extent, s.across)).collect();
         let sines = views.iter().flat_map(|one| views.iter().map(|other| libm::sin(one.angle - other.angle).abs()));
         let sine = sines.filter(|sine| *sine > 0.0).fold(1.0, f64::min);
-        let widest = strips.iter().map(Strip::width).fold(0.0, f64::max);
+        let widest = corridors::widest(strips);
         let placed = placed(views, strips.iter().zip(extents).map(|(s, extent)| (s.direction, *extent, s.across)));
         Self { views, strips, extents, near: Near::polygons(&polygons), placed, reach: widest / sine }
     }

@@ -1,7 +1,7 @@
 //! Ways across rows are of one width: what leads through all rows of a place tells what leads through some of them.
 
 use super::beside::{Beside, placed, wider};
-use super::corridors::Strip;
+use super::corridors::{self, Strip};
 use super::gates::{crossing, leading_across};
 use super::racks::{self, Row};
 use super::turned::Turned;
@@ -82,7 +82,7 @@ impl Crossed {
     /// Of each strip, where the rows lie between aisles, along which it is not.
     fn of_each(views: [&Turned; 2], strips: &[Strip], placed: &[Beside], aisles: &[Strip], rows: &[Row]) -> Vec<Self> {
         let [view, other] = views;
-        let widest = strips.iter().map(Strip::width).fold(0.0, f64::max);
+        let widest = corridors::widest(strips);
         // Where a strip would cross a row if it were as long: along the strip, if it is none of the aisles' own kind.
         let place = |n: usize, row: &Row, between: [usize; 2]| {
             let strip = &strips[n];
