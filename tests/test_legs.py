@@ -94,10 +94,12 @@ def test_legs_of_one_pixel_of_a_coarse_map_are_racks_too() -> None:
     assert len(survey.of_kind("rack")) == 4 and len(survey.of_kind("corridor")) == 7
 
 
-def test_racks_whose_legs_all_show_are_sure() -> None:
+def test_racks_whose_legs_all_show_are_sure_and_so_are_the_aisles_beside_them() -> None:
     boxes = (box for n in range(4) for box in legs(4.0, 3.0 + 4.1 * n, 8, 1.1, 2.7))
-    racks = groundplan.survey(hall(29.6, 19.4, boxes, 17.0), resolution=RESOLUTION).of_kind("rack")
-    assert len(racks) == 4 and all(rack["confidence"] >= 0.8 for rack in racks)
+    survey = groundplan.survey(hall(29.6, 19.4, boxes, 17.0), resolution=RESOLUTION)
+    racks, aisles = survey.of_kind("rack"), [way for way in survey.of_kind("corridor") if way["name"][0] == "A"]
+    assert (len(racks), len(aisles)) == (4, 5)
+    assert all(label["confidence"] >= 0.8 for label in (*racks, *aisles))
 
 
 def test_racks_back_to_back_are_one() -> None:

@@ -31,7 +31,7 @@ def put(picture: Picture, x: float, y: float, width: float, depth: float, inside
     picture[box][2:-2, 2:-2] = inside
 
 
-def racks(picture: Picture) -> list[dict[str, object]]:
+def racks(picture: Picture) -> list[dict[str, Any]]:
     return groundplan.survey(picture, resolution=0.05).of_kind("rack")
 
 
@@ -48,6 +48,20 @@ def test_racks_far_apart_in_a_hall_are_racks_without_an_aisle_between(inside: in
         (_, y0), (_, y1) = label["axis"]
         assert abs(y1 - y0) == pytest.approx(16.0, abs=0.3)
         assert label["faces"]
+
+
+def test_a_rack_is_the_surer_the_more_others_are_as_deep() -> None:
+    picture = hall()
+    for x in (3.0, 8.0, 13.0, 18.0):
+        put(picture, x, 10.0, 1.1, 16.0, inside=0)
+    for x in (22.0, 26.0):
+        put(picture, x, 10.0, 1.9, 16.0, inside=0)
+    found = racks(picture)
+    thin, thick = (
+        [rack["confidence"] for rack in found if (rack["width"] > 1.5) is is_thick] for is_thick in (False, True)
+    )
+    assert len(thin) == 4 and len(thick) == 2
+    assert min(thin) > max(thick)
 
 
 def test_shelves_that_are_seen_through_are_racks() -> None:

@@ -125,7 +125,7 @@ impl<'a> Kinds<'a> {
     fn are_racks(&self, of: &Block) -> bool {
         let is_alike = |block: &&Block| are_alike(&of.row, &block.row) && (block.taken - of.taken).abs() <= TAKEN_ALIKE;
         let depth = of.row.depth();
-        let reach = 2.0 * ALIKE.0.max(ALIKE.1 * depth);
+        let reach = 2.0 * as_deep(depth);
         let first = |of: &[&Block]| of.partition_point(|block| block.row.depth() < depth - reach);
         let ahead =
             self.by_depth[first(&self.by_depth)..].iter().take_while(|block| block.row.depth() <= depth + reach);
@@ -171,7 +171,12 @@ fn gap(one: [f64; 2], two: [f64; 2]) -> f64 {
 
 /// True when two rows are about as deep.
 pub fn are_alike(one: &Row, two: &Row) -> bool {
-    (one.depth() - two.depth()).abs() <= ALIKE.0.max(ALIKE.1 * one.depth())
+    (one.depth() - two.depth()).abs() <= as_deep(one.depth())
+}
+
+/// Rows that differ from one so deep by no more are as deep, metres.
+pub fn as_deep(depth: f64) -> f64 {
+    ALIKE.0.max(ALIKE.1 * depth)
 }
 
 /// True when the middle of one of two rows lies in the other.

@@ -2,6 +2,7 @@
 //! to 1 (nothing against it). Each kind has its own question; the map itself is asked, not the steps that led to the
 //! label, so that two ways to find a label are held to one measure.
 
+use super::blocks::as_deep;
 use super::looks::{Looks, STEP, along, frame_of};
 use super::{Evidence, JunctionKind, Label};
 use crate::bands::map_each;
@@ -27,19 +28,43 @@ const FRONT: f64 = 0.4;
 const SOLID: f64 = 0.85;
 /// Less of a rack than this is taken where there is floor under it: then its posts are looked for.
 const HOLLOW: f64 = 0.5;
+/// So much does another rack that is as deep weigh beside what a rack looks like itself.
+const WITNESS: f64 = 0.5;
 /// Floor shows round a pillar at this distance from its faces, metres.
 const ROUND: f64 = 0.3;
+
+/// How deep racks are, in order: they come in kinds, and one as deep as others is less in doubt.
+struct Kinds(Vec<f64>);
+
+impl Kinds {
+    fn new(labels: &[Label]) -> Self {
+        let depth = |label: &Label| if let Label::Rack { width, .. } = label { Some(*width) } else { None };
+        let mut depths: Vec<f64> = labels.iter().filter_map(depth).collect();
+        depths.sort_by(f64::total_cmp);
+        Self(depths)
+    }
+
+    /// So many others are as deep as a rack.
+    fn others(&self, depth: f64) -> usize {
+        let off = as_deep(depth);
+        let [from, to] = [depth - off, depth + off].map(|end| self.0.partition_point(|other| *other < end));
+        (to - from).saturating_sub(1)
+    }
+}
 
 /// For each label how sure it is, 0 to 1.
 #[must_use]
 pub fn find_confidence(evidence: &Evidence, labels: &[Label]) -> Vec<f64> {
     let map = Looks { grid: evidence.grid };
+    let kinds = Kinds::new(labels);
     let sure = |label: &Label| match label {
         Label::Corridor { axis, width, .. } => map.corridor(*axis, *width),
         Label::Junction { kind, at, corridors, .. } => map.junction(labels, *kind, *at, corridors),
         Label::Region { polygon, .. } => map.region(polygon),
         Label::Door { axis, .. } => map.door(*axis),
-        Label::Rack { axis, width, .. } => map.rack(*axis, *width),
+        Label::Rack { axis, width, .. } => {
+            1.0 - (1.0 - map.rack(*axis, *width)) / (1.0 + WITNESS * kinds.others(*width) as f64)
+        }
         Label::Pillar { at, width, .. } => map.pillar(*at, *width),
     };
     let rounded = |label: &Label| (sure(label).clamp(0.0, 1.0) * 1000.0).round() / 1000.0;
@@ -62,7 +87,8 @@ impl Looks<'_> {
             }
         }
         let count = places.len() as f64;
-        let [left, right] = walled.map(|share| (2.0 * share / count).min(1.0));
+        let posts = [-1.0, 1.0].map(|side| self.posts(axis, side * width / 2.0));
+        let [left, right] = [0, 1].map(|side| (2.0 * walled[side] / count).max(posts[side]).min(1.0));
         free / count * left.min(right).sqrt()
     }
 
