@@ -68,7 +68,7 @@ def test_no_command_shows_the_help_and_is_wrong_usage(capsys: Capture) -> None:
         ("survey hall.yaml --figure", "there is no flag --figure", "did you mean --figures?"),
         ("survive", "there is no command 'survive'", "groundplan --help"),
         ("survey hall.yaml --resolution -1", "resolution '-1'", "groundplan survey --help"),
-        ("survey hall.yaml another.yaml", "one argument too many: 'another.yaml'", "groundplan survey --help"),
+        ("survey hall.yaml another.yaml", "one argument too many: 'another.yaml'", "groundplan survey MAP [-o DIR]"),
         ("survey hall.yaml --origin 1", "--origin has 1 numbers", "groundplan survey --help"),
         ("survey --direction 10 hall.yaml", "'hall.yaml' is not a number", "groundplan survey --help"),
         ("survey hall.yaml --directions 2 --direction 0 90", "not allowed with", "groundplan survey --help"),

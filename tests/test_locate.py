@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import math
 import pickle
+from typing import Any
 
 import numpy as np
 import pytest
@@ -84,6 +85,21 @@ def test_a_point_that_is_no_number_is_an_error(x: float) -> None:
         with pytest.raises(ParameterError, match="finite") as caught:
             ask()
         assert caught.value.code == "point.finite"
+
+
+@pytest.mark.parametrize("x", ["a", 1j])
+def test_a_point_that_is_not_of_numbers_is_an_error_that_names_it(x: Any) -> None:
+    survey = two_lines()
+    for ask in (
+        lambda: survey.locate(x, 1.0),
+        lambda: survey.locate([1.0, x], [1.0, 1.0]),
+        lambda: survey.labels_at(1, x),
+    ):
+        with pytest.raises(ParameterError) as caught:
+            ask()
+        assert caught.value.code == "point.number"
+    with pytest.raises(ParameterError, match="1j" if isinstance(x, complex) else repr(x)):
+        survey.locate(x, 1.0)
 
 
 def test_a_turned_origin_turns_the_faces() -> None:

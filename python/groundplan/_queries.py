@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 #: A point (x, y) in metres, a label's name, or the id of a face.
 Place: TypeAlias = "Sequence[float] | Floats | str | int"
 
+#: What a place may be, as a hint.
+PLACE = "a place is a point X,Y in metres, a label's name, or a face's id"
+
 #: Clearances whose free space is kept ready.
 KEPT = 4
 
@@ -50,6 +53,14 @@ class Route(Stage):
     clearance: float
 
 
+def no_point(x: Any, y: Any) -> ParameterError:
+    """What is wrong with what is no point."""
+    for value in (x, y):
+        if not _is_number(value):
+            return ParameterError("point.number", f"a coordinate cannot be {value!r}", "numbers, in metres")
+    return ParameterError("point.finite", f"the point ({x}, {y}) is not finite")
+
+
 class Queries:
     """A survey's index of places; its space of each clearance is made when it is first asked for."""
 
@@ -73,7 +84,10 @@ class Queries:
 
     def locate_all(self, x: npt.ArrayLike, y: npt.ArrayLike) -> SignedIds:
         """The faces that hold points, `NONE` outside."""
-        xs, ys = np.broadcast_arrays(np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64))
+        try:
+            xs, ys = np.broadcast_arrays(np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64))
+        except (TypeError, ValueError) as reason:
+            raise ParameterError("point.number", f"the points are none: {reason}", "as many numbers x as y") from None
         if not (np.isfinite(xs).all() and np.isfinite(ys).all()):
             raise ParameterError("point.finite", "a coordinate of the points is not finite")
         points = np.column_stack([xs.ravel(), ys.ravel()])
@@ -152,20 +166,18 @@ class Queries:
     def _named(self, name: str) -> Label:
         names = {label["name"]: label for label in self.survey.labels if "name" in label and "polygon" in label}
         if name not in names:
-            near = get_close_matches(name, names, 1) or sorted(names)[:1]
-            raise ParameterError("route.name", f"no label is named {name!r}", f"there is {near[0]}" if near else None)
+            near = get_close_matches(name, names, 1)
+            hint = f"did you mean {near[0]}?" if near else PLACE
+            raise ParameterError("route.name", f"no label is named {name!r}", hint)
         return names[name]
 
     def _point(self, place: Any, ways: _core.Ways, clearance: float) -> tuple[float, float]:
         try:
             x, y = (float(value) for value in place)
         except (TypeError, ValueError):
-            said = f"{place!r} is no place"
-            raise ParameterError(
-                "route.place", said, "a point (x, y) in metres, a label's name or a face's id"
-            ) from None
+            raise ParameterError("route.place", f"{place!r} is no place", PLACE) from None
         if not (math.isfinite(x) and math.isfinite(y)):
-            raise ParameterError("point.finite", f"the point ({x}, {y}) is not finite")
+            raise no_point(x, y)
         if self.locator.locate(x, y) is None:
             low, high = self.survey.subdivision.vertices.min(axis=0), self.survey.subdivision.vertices.max(axis=0)
             within = f"it reaches from ({low[0]:.2f}, {low[1]:.2f}) to ({high[0]:.2f}, {high[1]:.2f})"

@@ -19,7 +19,7 @@ from groundplan._errors import FormatError, MapError, ParameterError
 from groundplan._files import unreadable, whole
 from groundplan._format import check_format
 from groundplan._memory import give_back
-from groundplan._queries import Place, Queries, Route
+from groundplan._queries import Place, Queries, Route, no_point
 from groundplan._results import (
     KINDS,
     Adjacency,
@@ -171,13 +171,16 @@ class Survey(Stage):
         Raises
         ------
         ParameterError
-            ``point.finite`` for what is not.
+            ``point.finite`` for what is not, ``point.number`` for what is no number.
         """
         if isinstance(x, _MANY) or isinstance(y, _MANY):
             return self._queries.locate_all(x, y)
-        face = self._queries.locator.locate(x, y)
+        try:
+            face = self._queries.locator.locate(x, y)
+        except TypeError:
+            raise no_point(x, y) from None
         if face is None and not (math.isfinite(x) and math.isfinite(y)):
-            raise ParameterError("point.finite", f"the point ({x}, {y}) is not finite")
+            raise no_point(x, y)
         return face
 
     def labels_at(self, x: float, y: float) -> list[Label]:
@@ -186,10 +189,14 @@ class Survey(Stage):
         Raises
         ------
         ParameterError
-            ``point.finite`` for what is not.
+            ``point.finite`` for what is not, ``point.number`` for what is no number.
         """
-        if not (math.isfinite(x) and math.isfinite(y)):
-            raise ParameterError("point.finite", f"the point ({x}, {y}) is not finite")
+        try:
+            is_finite = math.isfinite(x) and math.isfinite(y)
+        except TypeError:
+            is_finite = False
+        if not is_finite:
+            raise no_point(x, y)
         return [self.labels[n] for n in self._queries.locator.labels_at(x, y)]
 
     def route(self, a: Place, b: Place, *, clearance: float = 0.3, map: Map | None = None) -> Route | None:

@@ -73,7 +73,7 @@ class Parser(argparse.ArgumentParser):
 
     def _refuse_argument(self, word: str) -> NoReturn:
         if not word.startswith("-"):
-            self.error(f"one argument too many: {word!r}")
+            self.error(f"one argument too many: {word!r}", (self.usage or "").partition("\n")[0] or None)
         flag = word.partition("=")[0]
         near = nearest(flag.lstrip("-"), [name[2:] for name in self._option_string_actions if name.startswith("--")])
         self.error(f"there is no flag {flag}", f"did you mean --{near}?" if near else None)
