@@ -42,11 +42,11 @@ def racks_of_legs(seed: int) -> Picture:
     return picture
 
 
-def shelves(empty: list[tuple[int, int]]) -> Picture:
-    """A hall with three rows of six shelves of 2.6 m between ways of 3.6 m; of the rows given shelves are empty."""
+def shelves(empty: list[tuple[int, int]], rows: int = 3) -> Picture:
+    """A hall with rows of six shelves of 2.6 m between ways of 3.6 m; of the rows given shelves are empty."""
     bay, end = 52, 72
-    picture = hall(2 * end + 6 * bay, 4 * AISLE + 6 * DEPTH)
-    for row in range(3):
+    picture = hall(2 * end + 6 * bay, (rows + 1) * AISLE + 2 * rows * DEPTH)
+    for row in range(rows):
         low = 20 + AISLE + row * (AISLE + 2 * DEPTH)
         picture[low : low + 2 * DEPTH, 20 + end : 20 + end + 6 * bay] = 0
         for _, shelf in (place for place in empty if place[0] == row):
@@ -64,11 +64,14 @@ def test_a_way_through_two_half_empty_rows_is_told_by_the_legs_that_do_not_stand
     assert sorted(crossings) == ["L"] * 4 + ["T"] * 4 + ["X"]
 
 
-@pytest.mark.parametrize("empty", [[], [(0, 2)], [(1, 3)], [(0, 1), (2, 4)]])
+@pytest.mark.parametrize(
+    ("empty", "rows"), [([], 3), ([(0, 2)], 3), ([(1, 3)], 3), ([(0, 1), (2, 4)], 3), ([(0, 2), (3, 4)], 6)]
+)
 def test_an_empty_shelf_in_one_row_is_no_way_where_those_through_all_rows_are_wider(
-    empty: list[tuple[int, int]],
+    empty: list[tuple[int, int]], rows: int
 ) -> None:
-    survey = groundplan.survey(shelves(empty), resolution=RESOLUTION)
+    # Through six rows the ways are longer than the rows.
+    survey = groundplan.survey(shelves(empty, rows), resolution=RESOLUTION)
     across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
     assert across == pytest.approx([3.6, 3.6], abs=0.15)
 

@@ -31,6 +31,8 @@ pub struct Side {
     pub near: Bits,
     /// Structure of some length: more than posts.
     pub faces: Bits,
+    /// The mouths of ways that open into it.
+    pub mouths: Bits,
 }
 
 impl Side {
@@ -46,13 +48,16 @@ impl Side {
         // Where bays recur, their posts are the side of the way along them.
         let posts = if racked { &view.touched[line] } else { &view.covered[line] };
         let mut walls = joined(posts, bay, SHORTEST_SIDE);
+        let mut open = Bits::new(view.size[0]);
+        for mouth in mouths {
+            open.fill(mouth.clone());
+            walls.fill(mouth.clone());
+        }
         if !mouths.is_empty() {
-            for mouth in mouths {
-                walls.fill(mouth.clone());
-            }
             walls = joined(&walls, JAMB, SHORTEST_SIDE);
         }
-        Self { walls, near: joined(posts, BAY / 2.0, 0.0), faces: joined(&view.covered[line], FACE_GAP, FACE) }
+        let faces = joined(&view.covered[line], FACE_GAP, FACE);
+        Self { walls, near: joined(posts, BAY / 2.0, 0.0), faces, mouths: open }
     }
 }
 
@@ -72,7 +77,7 @@ pub struct Column {
     pub near: bool,
     /// On which sides structure of some length lies.
     pub faces: [bool; 2],
-    /// On which sides the ground beyond is not free.
+    /// On which sides the ground beyond is not free, or a known way.
     pub held: [bool; 2],
 }
 

@@ -79,7 +79,7 @@ impl Family<'_> {
                 walled: holds(0, c) && holds(1, c),
                 near: sides.iter().any(|side| side.near.get(c)),
                 faces: sides.map(|side| side.faces.get(c)),
-                held: [0, 1].map(|n| beyond[n][c - first]),
+                held: [0, 1].map(|n| beyond[n][c - first] || sides[n].mouths.get(c)),
             })
             .collect()
     }

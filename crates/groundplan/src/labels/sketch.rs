@@ -20,7 +20,7 @@ use crate::bands::{Later, Side, each, map_each};
 /// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
 const ALONE: (f64, f64) = (2.0, 5.0);
 /// Or so long where so many others run beside it that are as wide and as long but for this share, with no more than a
-/// rack between one and the next.
+/// rack between one and the next; as long for its width as what is no niche, where there is a rack and not a wall.
 const RECURS: f64 = 3.5;
 const OTHERS: usize = 2;
 const ALIKE: f64 = 0.2;
@@ -181,8 +181,10 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
                 !goes_on(n, one.max(two).min(one + two + reach(&meetings[m], n)), NICHE)
                     && !goes_on(n, one + two, NICHES)
             };
-            let is_aisle =
-                || strips[n].length() >= RECURS.max(ALONE.0 * strips[n].width()) && recurs(&strips, &placed, n);
+            let is_one_of = |widths: f64, apart: (f64, f64)| {
+                strips[n].length() >= RECURS.max(widths * strips[n].width()) && recurs(&strips, &placed, n, apart)
+            };
+            let is_aisle = || is_one_of(ALONE.0, (0.0, racks::DEPTH.1)) || is_one_of(NICHE.0, racks::DEPTH);
             match met[n].len() {
                 0 | 1 if racks::is_within_row(&strips, &placed, n) => false,
                 0 if is_shut(n) => strips[n].length() >= SHUT * strips[n].width(),
@@ -226,8 +228,8 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeti
     }
 }
 
-/// True when others that are alike run beside a strip, one after another.
-fn recurs(strips: &[Strip], placed: &[Beside], n: usize) -> bool {
+/// True when others that are alike run beside a strip, one after another, so far apart, metres.
+fn recurs(strips: &[Strip], placed: &[Beside], n: usize, apart: (f64, f64)) -> bool {
     let own = &strips[n];
     let alike = |one: f64, two: f64| (one - two).abs() <= ALIKE * one.max(two);
     let is_like = |other: &&Strip| {
@@ -236,15 +238,14 @@ fn recurs(strips: &[Strip], placed: &[Beside], n: usize) -> bool {
             && alike(own.width(), other.width())
             && shared >= (1.0 - ALIKE) * own.length().max(other.length())
     };
-    let near = own.width() + racks::DEPTH.1;
-    let reach = OTHERS as f64 * near;
+    let reach = OTHERS as f64 * (own.width() + apart.1);
     let around = placed[own.direction].touching(own.along, [own.middle() - reach, own.middle() + reach]);
-    let mut middles: Vec<f64> = around.iter().map(|&m| &strips[m]).filter(is_like).map(Strip::middle).collect();
-    middles.sort_by(f64::total_cmp);
-    let at = middles.partition_point(|&middle| middle < own.middle());
-    let is_next = |pair: &&[f64]| pair[1] - pair[0] <= near;
-    let above = middles[at..].windows(2).take_while(is_next).count();
-    let below = middles[..(at + 1).min(middles.len())].windows(2).rev().take_while(is_next).count();
+    let mut sides: Vec<[f64; 2]> = around.iter().map(|&m| &strips[m]).filter(is_like).map(|s| s.across).collect();
+    sides.sort_by(|one, two| (one[0] + one[1]).total_cmp(&(two[0] + two[1])));
+    let at = sides.partition_point(|side| side[0] + side[1] < own.across[0] + own.across[1]);
+    let is_next = |pair: &&[[f64; 2]]| (apart.0..=apart.1).contains(&(pair[1][0] - pair[0][1]));
+    let above = sides[at..].windows(2).take_while(is_next).count();
+    let below = sides[..(at + 1).min(sides.len())].windows(2).rev().take_while(is_next).count();
     above + below >= OTHERS
 }
 

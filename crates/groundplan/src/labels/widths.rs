@@ -49,14 +49,17 @@ impl Widths {
 pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
     let mut stays = vec![true; strips.len()];
-    for view in views {
+    let places: Vec<Place> = views.iter().map(|view| Place::new(views, &strips, &placed, view.direction)).collect();
+    // How long the longest row is that each runs along.
+    let mut along = vec![0.0_f64; strips.len()];
+    for Place { aisles, rows } in &places {
+        for (row, n) in rows.iter().flat_map(|(row, between)| between.map(|n| (row, aisles[n]))) {
+            along[n] = along[n].max(row.length());
+        }
+    }
+    for (view, place) in views.iter().zip(&places) {
         let Some(other) = crossing(views, view.direction) else { continue };
-        let is_aisle =
-            |n: &usize| strips[*n].direction == view.direction && !racks::is_within_row(&strips, &placed, *n);
-        let aisles: Vec<Strip> = (0..strips.len()).filter(is_aisle).map(|n| strips[n].clone()).collect();
-        let extents: Vec<[f64; 2]> = aisles.iter().map(|strip| strip.along).collect();
-        let rows = racks::between(views, &aisles, &extents);
-        let through = Crossed::of_each([view, other], &strips, &placed, &aisles, &rows);
+        let through = Crossed::of_each([view, other], &strips, &placed, place, &along);
         let whole = |n: &usize| through[*n].rows >= 2 && !through[*n].goes_on;
         let known = Widths((0..strips.len()).filter(whole).map(|n| strips[n].width()).collect());
         for (n, crossed) in through.iter().enumerate() {
@@ -66,6 +69,23 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     }
     let mut flags = stays.into_iter();
     strips.into_iter().filter(|_| flags.next().unwrap_or(true)).collect()
+}
+
+/// The aisles along a direction, and the rows between them, each with the two beside it.
+struct Place {
+    aisles: Vec<usize>,
+    rows: Vec<(Row, [usize; 2])>,
+}
+
+impl Place {
+    fn new(views: &[Turned], strips: &[Strip], placed: &[Beside], direction: usize) -> Self {
+        let is_aisle = |n: &usize| strips[*n].direction == direction && !racks::is_within_row(strips, placed, *n);
+        let aisles: Vec<usize> = (0..strips.len()).filter(is_aisle).collect();
+        let own: Vec<Strip> = aisles.iter().map(|&n| strips[n].clone()).collect();
+        let extents: Vec<[f64; 2]> = own.iter().map(|strip| strip.along).collect();
+        let rows = racks::between(views, &own, &extents).into_iter();
+        Self { aisles, rows: rows.filter_map(|row| row.between.map(|between| (row, between))).collect() }
+    }
 }
 
 /// What a strip crosses of the rows of a place.
@@ -80,14 +100,20 @@ struct Crossed {
 
 impl Crossed {
     /// Of each strip, where the rows lie between aisles, along which it is not.
-    fn of_each(views: [&Turned; 2], strips: &[Strip], placed: &[Beside], aisles: &[Strip], rows: &[Row]) -> Vec<Self> {
-        let [view, other] = views;
+    fn of_each(
+        [view, other]: [&Turned; 2],
+        strips: &[Strip],
+        placed: &[Beside],
+        Place { aisles, rows }: &Place,
+        along: &[f64],
+    ) -> Vec<Self> {
         let widest = corridors::widest(strips);
         // Where a strip would cross a row if it were as long: along the strip, if it is none of the aisles' own kind.
         let place = |n: usize, row: &Row, between: [usize; 2]| {
             let strip = &strips[n];
-            let shorter = between.map(|n| aisles[n].length()).into_iter().fold(f64::INFINITY, f64::min);
-            if strip.direction != other.direction || strip.length() >= shorter {
+            let shorter = between.map(|n| strips[aisles[n]].length()).into_iter().fold(f64::INFINITY, f64::min);
+            let is_aisle = strip.length() >= shorter && along[n] >= row.length();
+            if strip.direction != other.direction || is_aisle {
                 return None;
             }
             let [s, u] = view.crossing(other, f64::midpoint(row.across[0], row.across[1]), strip.middle());
@@ -95,24 +121,24 @@ impl Crossed {
             (from..=to).contains(&u).then_some(s)
         };
         let crosses = |n: usize, s: f64| (strips[n].along[0]..=strips[n].along[1]).contains(&s);
-        let rows: Vec<(&Row, [usize; 2])> = rows.iter().filter_map(|row| Some((row, row.between?))).collect();
         // The rows above and below each aisle.
         let mut beside: Vec<[Vec<usize>; 2]> = vec![Default::default(); aisles.len()];
         let mut crossed: Vec<Vec<usize>> = vec![Vec::new(); strips.len()];
-        for (m, &(row, between)) in rows.iter().enumerate() {
+        for (m, (row, between)) in rows.iter().enumerate() {
             beside[between[0]][0].push(m);
             beside[between[1]][1].push(m);
-            for n in leading_across(views, placed, row, widest) {
-                if place(n, row, between).is_some_and(|s| crosses(n, s)) {
+            for n in leading_across([view, other], placed, row, widest) {
+                if place(n, row, *between).is_some_and(|s| crosses(n, s)) {
                     crossed[n].push(m);
                 }
             }
         }
         let of_strip = |(n, own): (usize, &Vec<usize>)| {
-            let through = |&m: &usize| aisles[rows[m].1[1]].middle() - aisles[rows[m].1[0]].middle();
+            let middle = |n: usize| strips[aisles[n]].middle();
+            let through = |&m: &usize| middle(rows[m].1[1]) - middle(rows[m].1[0]);
             let rest = own.iter().map(through).fold(strips[n].length(), |rest, through| rest - through);
             let mut next = own.iter().flat_map(|&m| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]));
-            let goes_on = next.any(|&m| place(n, rows[m].0, rows[m].1).is_some_and(|s| !crosses(n, s)));
+            let goes_on = next.any(|&m| place(n, &rows[m].0, rows[m].1).is_some_and(|s| !crosses(n, s)));
             Self { rows: own.len(), rest, goes_on }
         };
         crossed.iter().enumerate().map(of_strip).collect()
