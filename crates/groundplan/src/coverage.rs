@@ -6,6 +6,7 @@ use crate::directions::Directions;
 use crate::gradients::Gradients;
 use crate::grid::{Frame, tidy};
 use crate::lines::Lines;
+use crate::on_line::OnLine;
 use crate::parameters::Parameters;
 use crate::radiograms::weight;
 
@@ -82,6 +83,8 @@ impl<'a> Coverage<'a> {
     pub fn add(&mut self, gradients: &Gradients) {
         let span = 2 * self.diagonal.ceil() as usize + 4;
         for Family { angle, heading: [cos, sin], members } in &mut self.families {
+            let offsets: Vec<f64> = members.iter().map(|member| member.offset).collect();
+            let lines = OnLine::new(&offsets, FARTHEST_PIXELS);
             gradients.iter().for_each(|(pixel, along, magnitude)| {
                 if weight(f64::from(along), magnitude, *angle, self.tolerance) == 0 {
                     return;
@@ -89,11 +92,7 @@ impl<'a> Coverage<'a> {
                 let (x, y) = (f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
                 let offset = y * *cos - x * *sin;
                 let place = x * *cos + y * *sin + self.diagonal;
-                let first = members.partition_point(|m| m.offset < offset - FARTHEST_PIXELS);
-                for member in &mut members[first..] {
-                    if member.offset > offset + FARTHEST_PIXELS {
-                        break;
-                    }
+                for member in &mut members[lines.at(offset)] {
                     if (member.offset - offset).abs() <= member.reach {
                         let bits = &mut member.covered;
                         if bits.is_empty() {

@@ -1,8 +1,9 @@
 //! II-D: what the pixels of the map, or of some of its rows, add to each face, by sums over rows between line
 //! crossings.
 
-use crate::arrangement::{Arrangement, NONE};
+use crate::arrangement::Arrangement;
 use crate::bands::{BAND_ROWS, map_bands};
+use crate::crossings::{Crossing, Crossings};
 use crate::grid::{Grid, State};
 use std::ops::Range;
 
@@ -91,149 +92,70 @@ const WORD: usize = 8;
 /// Rows that are added up before they are put to the others.
 const TOGETHER: usize = 64 * BAND_ROWS;
 
+/// Four sums in one number, each from a bit on: unknown, free and all pixels, and percent. Over the rows of a band none
+/// reaches into the next, be they 16 million pixels wide.
+type Packed = u128;
+const FIELDS: [u32; 4] = [0, 30, 60, 90];
+
+/// What each value of a pixel adds.
+fn packed(grid: &Grid) -> [Packed; 256] {
+    std::array::from_fn(|value| {
+        let state = grid.table.states[value];
+        let is = |wanted: State| Packed::from(state == wanted);
+        let sums = [is(State::Unknown), is(State::Free), 1, Packed::from(grid.table.occupancy[value])];
+        sums.into_iter().zip(FIELDS).map(|(sum, from)| sum << from).sum()
+    })
+}
+
+fn unpacked(packed: Packed) -> Sums {
+    let of_pixels = |n: usize| (packed >> FIELDS[n] & ((1 << 30) - 1)) as i64;
+    Sums { unknown: of_pixels(0), free: of_pixels(1), pixels: of_pixels(2), percent: (packed >> FIELDS[3]) as i64 }
+}
+
 /// Sums of each face: what lies left of its right side less what lies left of its left side, row by row. A pixel
 /// belongs to the face that its centre lies in; a centre on a line belongs to the right of it or above.
 fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads: usize) -> Vec<Sums> {
     let width = grid.frame.width;
-    let table = grid.table;
-    // Percent in the low 24 bits' place, unknown and free above: three sums in one addition.
-    let mut packed = [0u128; 256];
-    for (value, entry) in packed.iter_mut().enumerate() {
-        *entry = u128::from(table.occupancy[value])
-            | u128::from(table.states[value] == State::Unknown) << 48
-            | u128::from(table.states[value] == State::Free) << 88;
-    }
-    let unpack = |sum: u128, pixels: i64| Sums {
-        percent: (sum & ((1 << 48) - 1)) as i64,
-        unknown: ((sum >> 48) & ((1 << 40) - 1)) as i64,
-        free: (sum >> 88) as i64,
-        pixels,
-    };
+    let packed = packed(grid);
     let mut totals = vec![Sums::default(); arrangement.face_count()];
-    // Some bands at a time, each with the faces that it has a part of: few of all.
+    // Some bands at a time, each with the edges that cross it: few of all.
     for first in rows.clone().step_by(TOGETHER) {
         let some = first..rows.end.min(first + TOGETHER);
         let parts = map_bands(some.len(), threads, |band| {
             let band = band.start + some.start..band.end + some.start;
-            let mut left = vec![0u128; width / WORD + 1];
-            let crossings = Crossings::new(arrangement, band.clone());
-            let mut sums = vec![Sums::default(); crossings.faces.len()];
+            let mut left: Vec<Packed> = vec![0; width / WORD + 1];
+            let Crossings { mut walks, mut edges } = Crossings::new(arrangement, width, &band);
             for y in band {
                 let row = grid.row(y);
                 let words = row.chunks_exact(WORD);
-                let mut sum = 0u128;
+                let mut sum: Packed = 0;
                 for (before, word) in left.iter_mut().zip(words) {
                     *before = sum;
                     // Eight pixels alike are the most of a map.
                     if *word == [word[0]; WORD] {
                         sum += packed[usize::from(word[0])] << WORD.ilog2();
                     } else {
-                        sum += word.iter().map(|&value| packed[usize::from(value)]).sum::<u128>();
+                        sum += word.iter().map(|&value| packed[usize::from(value)]).sum::<Packed>();
                     }
                 }
                 left[width / WORD] = sum;
-                crossings.of_row(arrangement, y, width, |faces, column| {
+                for walk in walks.iter_mut().filter(|walk| walk.rows.contains(&y)) {
+                    let (edge, column) = walk.next(y, &edges, width);
                     let rest = &row[column - column % WORD..column];
-                    let sum = left[column / WORD] + rest.iter().map(|&value| packed[usize::from(value)]).sum::<u128>();
-                    let part = unpack(sum, column as i64);
-                    for (face, sign) in faces.into_iter().zip([1, -1]) {
-                        if face != NONE {
-                            sums[face as usize].add(sign, part);
-                        }
-                    }
-                });
+                    edges[edge].left +=
+                        left[column / WORD] + rest.iter().map(|&value| packed[usize::from(value)]).sum::<Packed>();
+                }
             }
-            (crossings.faces, sums)
+            edges
         });
-        for (face, sums) in parts.into_iter().flat_map(|(faces, sums)| faces.into_iter().zip(sums)) {
-            totals[face as usize].add(1, sums);
+        for Crossing { half, left, .. } in parts.into_iter().flatten() {
+            let left = unpacked(left);
+            for (half, sign) in [(half, 1), (Arrangement::twin(half), -1)] {
+                if let Some(total) = totals.get_mut(arrangement.face(half) as usize) {
+                    total.add(sign, left);
+                }
+            }
         }
     }
     totals
-}
-
-/// Edges that cross the rows of a band, by row.
-struct Crossings {
-    first_row: usize,
-    /// The faces beside them, ascending.
-    faces: Vec<u32>,
-    /// Half-edges that run upwards across each row, and where among those faces the ones left and right of each are.
-    rows: Vec<Vec<(u32, [u32; 2])>>,
-}
-
-impl Crossings {
-    fn new(arrangement: &Arrangement, band: Range<usize>) -> Self {
-        let mut crossing = Vec::new();
-        let mut add = |edge: u32| {
-            let [p, q] = arrangement.edges[edge as usize].map(|v| arrangement.rows_below[v as usize] as usize);
-            let rows = p.min(q).max(band.start)..p.max(q).min(band.end);
-            if !rows.is_empty() {
-                crossing.push((2 * edge + u32::from(p > q), rows));
-            }
-        };
-        for (line, edges) in arrangement.lines.iter().zip(&arrangement.line_edges) {
-            if line.a == 0 || edges.is_empty() {
-                continue;
-            }
-            // Along a line the rows only rise or only fall: the first edge of the band is found by halving.
-            let rising = line.a < 0;
-            let before = |&edge: &u32| {
-                let end = arrangement.rows_below[arrangement.edges[edge as usize][1] as usize] as usize;
-                if rising { end <= band.start } else { end >= band.end }
-            };
-            let mut low = edges.start;
-            let mut high = edges.end;
-            while low < high {
-                let middle = low + (high - low) / 2;
-                if before(&middle) {
-                    low = middle + 1;
-                } else {
-                    high = middle;
-                }
-            }
-            for edge in low..edges.end {
-                let start = arrangement.rows_below[arrangement.edges[edge as usize][0] as usize] as usize;
-                if if rising { start >= band.end } else { start <= band.start } {
-                    break;
-                }
-                add(edge);
-            }
-        }
-        let border = arrangement.edge_lines.iter().rposition(|&line| line != NONE).map_or(0, |n| n + 1);
-        (border as u32..arrangement.edges.len() as u32).for_each(&mut add);
-        let beside = |half: u32| [half, Arrangement::twin(half)].map(|half| arrangement.face(half));
-        let mut faces: Vec<u32> = crossing.iter().flat_map(|(half, _)| beside(*half)).collect();
-        faces.sort_unstable();
-        faces.dedup();
-        // The outside is none, and would be the last.
-        if faces.last() == Some(&NONE) {
-            faces.pop();
-        }
-        let mut rows = vec![Vec::new(); band.len()];
-        for (half, crossed) in crossing {
-            let own = beside(half).map(|face| faces.binary_search(&face).map_or(NONE, |place| place as u32));
-            for row in &mut rows[crossed.start - band.start..crossed.end - band.start] {
-                row.push((half, own));
-            }
-        }
-        Self { first_row: band.start, faces, rows }
-    }
-
-    /// Calls `visit` with the places of the faces left and right of each half-edge that runs upwards across row `y`, and
-    /// the number of pixels left of it.
-    fn of_row(&self, arrangement: &Arrangement, y: usize, width: usize, mut visit: impl FnMut([u32; 2], usize)) {
-        for &(half, faces) in &self.rows[y - self.first_row] {
-            let line = arrangement.edge_lines[(half >> 1) as usize];
-            let column = if line == NONE {
-                // Upwards along the right side, downwards (so its twin upwards) along the left.
-                if half & 1 == 0 { width } else { 0 }
-            } else {
-                let line = arrangement.lines[line as usize];
-                let (n, d) = (2 * line.c - line.b * (2 * y as i64 + 1) - line.a, 2 * line.a);
-                let (n, d) = if d < 0 { (-n, -d) } else { (n, d) };
-                (-(-n).div_euclid(d)).clamp(0, width as i64) as usize
-            };
-            visit(faces, column);
-        }
-    }
 }

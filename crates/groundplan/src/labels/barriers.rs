@@ -92,11 +92,15 @@ pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize>
     let side = ((GETS_THROUGH * count as f64) as usize).max(1);
     // On the borders of cells: from between them a cell might be none, and none is barred.
     let first = ((across[0] - view.start[1]) / view.cell).round() * view.cell + view.start[1];
+    let place = |n: usize| first + n as f64 * view.cell;
+    let mut found = Vec::new();
+    // Mostly nothing stands there.
+    if !view.barred_where(range.clone(), place(0), place(count), |barred| barred > 0.0).contains(&true) {
+        return found;
+    }
     // For how many columns each place across has been free.
     let mut free_for = vec![side; count];
     let mut reached = vec![true; count];
-    let mut found = Vec::new();
-    let place = |n: usize| first + n as f64 * view.cell;
     let row = |n: usize| view.barred_where(range.clone(), place(n), place(n) + view.cell, |barred| barred > 0.0);
     let barred: Vec<Vec<bool>> = (0..count).map(row).collect();
     let from = range.start;

@@ -2,7 +2,7 @@
 
 use super::corridors::{self, Strip};
 use super::near::Near;
-use super::turned::Turned;
+use super::turned::{Turned, least_sine};
 use super::{JunctionKind, barriers};
 use crate::grid::{angle_between, turned};
 use crate::subdivision::distance;
@@ -62,7 +62,7 @@ const SQUARE_DEG: f64 = 55.0;
 pub fn find(views: &[Turned], strips: &[Strip]) -> Vec<Meeting> {
     // Where two may meet both their centre lines lead, each from as far as it may.
     let widest = corridors::widest(strips);
-    let near = SHORT + widest / 2.0 / LEAST_SINE;
+    let near = SHORT + widest / 2.0 / least_sine(views, LEAST_SINE);
     let lines: Vec<_> = strips
         .iter()
         .map(|s| views[s.direction].rectangle([s.along[0] - near, s.along[1] + near], [s.middle(); 2]))
@@ -200,17 +200,20 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
     }
     let (m1, m2) = (one.middle(), two.middle());
     let at = [(m1 * c2 - m2 * c1) / sine, (m1 * s2 - m2 * s1) / sine];
-    let mut ways = Vec::new();
-    let mut reach = [0.0; 2];
-    let (mut led_on, mut shut) = ([false; 2], [false; 2]);
-    let mut legs = [Leg { beyond: [0.0; 2], ends: [false; 2], is_clear: true }; 2];
-    for (n, (strip, other, view)) in [(one, two, first), (two, one, second)].into_iter().enumerate() {
-        let u = view.place(at)[0];
-        reach[n] = other.width() / 2.0 / sine.abs();
+    // Of most pairs one does not lead there: nothing else is asked of them.
+    let places = [first, second].map(|view| view.place(at)[0]);
+    let reach = [two, one].map(|other| other.width() / 2.0 / sine.abs());
+    for (n, strip) in [one, two].into_iter().enumerate() {
         let near = reach[n] + SHORT;
-        if u < strip.along[0] - near || u > strip.along[1] + near {
+        if places[n] < strip.along[0] - near || places[n] > strip.along[1] + near {
             return None;
         }
+    }
+    let mut ways = Vec::new();
+    let (mut led_on, mut shut) = ([false; 2], [false; 2]);
+    let mut legs = [Leg { beyond: [0.0; 2], ends: [false; 2], is_clear: true }; 2];
+    for (n, (strip, view)) in [(one, first), (two, second)].into_iter().enumerate() {
+        let u = places[n];
         // The way from the corridor's end to the middle.
         let (from, to) = if u < strip.along[0] {
             (u, strip.along[0])

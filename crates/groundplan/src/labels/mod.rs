@@ -21,7 +21,6 @@ mod mouths;
 mod names;
 mod narrowed;
 mod near;
-mod on_line;
 mod outline;
 mod paper;
 mod patches;

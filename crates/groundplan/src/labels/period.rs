@@ -84,8 +84,8 @@ pub fn power(places: &[f64], pitch: f64, harmonics: usize) -> f64 {
 
 /// Cosine and sine of so many turns.
 fn turned(turns: f64) -> [f64; 2] {
-    let angle = TAU * (turns - turns.floor());
-    [libm::cos(angle), libm::sin(angle)]
+    let (sin, cos) = libm::sincos(TAU * (turns - turns.floor()));
+    [cos, sin]
 }
 
 /// One turn after another.

@@ -2,9 +2,9 @@
 //! leaves as future work.
 
 use super::Evidence;
-use super::on_line::OnLine;
 use super::turned::Turned;
 use crate::gradients::SPECK;
+use crate::on_line::OnLine;
 
 /// Lags are counted in steps of this many metres, between the shortest and the longest that are looked at.
 const STEP: f64 = 0.05;

@@ -6,7 +6,7 @@
 use super::beside::{Beside, placed, wider};
 use super::corridors::{self, Strip};
 use super::near::Near;
-use super::turned::Turned;
+use super::turned::{Turned, least_sine};
 
 /// A piece of a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,11 +125,16 @@ impl<'a> Crossings<'a> {
     pub fn new(views: &'a [Turned], strips: &'a [Strip], extents: &'a [[f64; 2]]) -> Self {
         let polygons: Vec<_> =
             strips.iter().zip(extents).map(|(s, extent)| views[s.direction].rectangle(*extent, s.across)).collect();
-        let sines = views.iter().flat_map(|one| views.iter().map(|other| libm::sin(one.angle - other.angle).abs()));
-        let sine = sines.filter(|sine| *sine > 0.0).fold(1.0, f64::min);
         let widest = corridors::widest(strips);
         let placed = placed(views, strips.iter().zip(extents).map(|(s, extent)| (s.direction, *extent, s.across)));
-        Self { views, strips, extents, near: Near::polygons(&polygons), placed, reach: widest / sine }
+        Self {
+            views,
+            strips,
+            extents,
+            near: Near::polygons(&polygons),
+            placed,
+            reach: widest / least_sine(views, f64::MIN_POSITIVE),
+        }
     }
 
     /// The corridors on one side of a corridor, no further off than a row is deep, the nearest first; each with how far.

@@ -4,13 +4,13 @@
 use super::Evidence;
 use super::grounds::Grounds;
 use super::look::{LANES, Look};
-use super::on_line::OnLine;
 use super::racks::Row;
 use super::recall::Key;
 use super::shares::Shares;
 use super::summed::{Part, Summed};
 use super::sums::{Cells, Source, Told, What};
 use crate::bits::Bits;
+use crate::on_line::OnLine;
 use crate::radiograms::weight;
 use std::ops::Range;
 use std::sync::Arc;
@@ -434,6 +434,12 @@ impl Turned {
         let at = |v: f64| (((v - self.start[1]) / self.cell).round().max(0.0) as usize).min(self.size[1]);
         (at(low), at(high).max(at(low)))
     }
+}
+
+/// The least sine of the angle between two directions, of those that are no less than that.
+pub fn least_sine(views: &[Turned], least: f64) -> f64 {
+    let sines = views.iter().flat_map(|one| views.iter().map(|other| libm::sin(one.angle - other.angle).abs()));
+    sines.filter(|sine| *sine >= least).fold(1.0, f64::min)
 }
 
 fn is_closed(blocked: f64, barred: f64) -> bool {

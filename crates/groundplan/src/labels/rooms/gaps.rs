@@ -1,9 +1,9 @@
 //! Gaps in walls: where a line of the map is free between structure that lies along it.
 
 use super::super::Evidence;
-use super::super::on_line::OnLine;
 use super::raster::Raster;
 use crate::grid::angle_between;
+use crate::on_line::OnLine;
 use crate::subdivision::distance;
 
 /// A straight closure of a gap, jamb to jamb, in the raster's places; both ends lie in free space.

@@ -108,12 +108,21 @@ impl Tracer<'_> {
         let mut ring = Vec::new();
         let mut at = start;
         let mut before = NOWHERE;
+        // Of sides in a straight row the first and the last are enough: none between is ever the farthest, or the least.
+        let mut sides = 0;
         loop {
             if at.1 == 0 && before != 0 {
                 seen.pass(at.0);
             }
+            if at.1 != before {
+                sides = 0;
+            }
             before = at.1;
             let [middle, end] = self.points(at);
+            if sides >= 2 {
+                ring.pop();
+            }
+            sides += 1;
             ring.push((middle, false));
             let (pixel, side) = at;
             // The pixels ahead: on the region's side, and on the other.
@@ -134,6 +143,7 @@ impl Tracer<'_> {
             };
             if is_node {
                 ring.push((end, true));
+                sides = 0;
             }
             at = next;
             if at == start {
