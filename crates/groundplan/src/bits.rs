@@ -53,11 +53,6 @@ impl Bits {
         pixels.clone().step_by(WORD).map(ones).sum()
     }
 
-    /// The words that the set is kept in.
-    pub fn words(&self) -> &[u64] {
-        &self.0
-    }
-
     /// Runs of pixels in the set among some pixels, each going on over so many that are not.
     pub fn joined(&self, pixels: Range<usize>, gap: usize) -> Vec<Range<usize>> {
         let mut joined: Vec<Range<usize>> = Vec::new();

@@ -187,9 +187,18 @@ impl<'a> Grid<'a> {
 
     /// What is at a point of the map frame; nothing is known beyond the map.
     pub(crate) fn state_at(&self, point: [f64; 2]) -> State {
+        self.pixel_at(point).map_or(State::Unknown, |pixel| self.state_of(pixel))
+    }
+
+    /// Column and row of the pixel that a point of the map frame lies in.
+    pub(crate) fn pixel_at(&self, point: [f64; 2]) -> Option<[usize; 2]> {
         let [x, y] = self.frame.to_pixels(point);
         let is_inside = (0.0..self.frame.width as f64).contains(&x) && (0.0..self.frame.height as f64).contains(&y);
-        if is_inside { self.table.states[usize::from(self.row(y as usize)[x as usize])] } else { State::Unknown }
+        is_inside.then_some([x as usize, y as usize])
+    }
+
+    pub(crate) fn state_of(&self, [x, y]: [usize; 2]) -> State {
+        self.table.states[usize::from(self.row(y)[x])]
     }
 }
 

@@ -7,8 +7,10 @@ use super::Evidence;
 use super::period::{self, Period};
 use super::pitch;
 use super::racks::Row;
+use super::recall::Key;
 use super::turned::Turned;
 use crate::bands::map_each;
+use std::sync::Arc;
 
 /// The shortest pitch that is looked for, and the longest, metres.
 const PITCHES: [f64; 2] = [1.0, 6.5];
@@ -44,9 +46,13 @@ pub fn find(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Option<P
         specks.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let places: Vec<Vec<f64>> = own.iter().map(|&n| along(&rows[n], &specks)).collect();
         drop(specks);
-        let Some(common) = common(&places, evidence.threads) else { continue };
+        let Some(common) = common(&places, evidence) else { continue };
         let length = |n: usize| rows[n].along[1] - rows[n].along[0];
-        let periods = map_each(own.len(), evidence.threads, |m| of_row(&places[m], common, length(own[m])));
+        let periods = map_each(own.len(), evidence.threads, |m| {
+            let (places, length) = (&places[m], length(own[m]));
+            let key = || Key::default().numbers(places).number(common).number(length);
+            evidence.recall.periods.or_find(key, || of_row(places, common, length))
+        });
         for (n, period) in own.into_iter().zip(periods) {
             found[n] = period;
         }
@@ -70,13 +76,15 @@ fn along(row: &Row, specks: &[[f64; 2]]) -> Vec<f64> {
 }
 
 /// The pitch at which the rows have most power together; the longest of those that are about as good.
-fn common(rows: &[Vec<f64>], threads: usize) -> Option<f64> {
+fn common(rows: &[Vec<f64>], evidence: &Evidence) -> Option<f64> {
+    let Evidence { threads, recall, .. } = *evidence;
     let frequencies = period::frequencies(rows.iter().map(Vec::as_slice), PITCHES)?;
     let power = |frequencies: &[f64]| {
         let mut powers = vec![0.0; frequencies.len()];
         for places in rows {
-            let strengths = period::strengths(places, frequencies);
-            powers.iter_mut().zip(strengths).for_each(|(sum, own)| *sum += places.len() as f64 * own * own);
+            let key = || Key::default().numbers(places).numbers(frequencies);
+            let strengths = recall.strengths.or_find(key, || Arc::new(period::strengths(places, frequencies)));
+            powers.iter_mut().zip(&*strengths).for_each(|(sum, own)| *sum += places.len() as f64 * own * own);
         }
         powers
     };
@@ -103,11 +111,15 @@ fn common(rows: &[Vec<f64>], threads: usize) -> Option<f64> {
 /// A row's own pitch near the common one. Posts are narrow: their harmonics tell it more finely than they do
 /// themselves.
 fn of_row(places: &[f64], common: f64, length: f64) -> Option<Period> {
+    // Two bays at least, and posts enough for them.
+    let least = common * (1.0 - OWN);
+    let posts = places.len() as f64 / POST;
+    if length <= 1.5 * least || posts < CLEAR {
+        return None;
+    }
     let pitches = (-STEPS..=STEPS).map(|n| common * (1.0 + OWN * f64::from(n) / f64::from(STEPS)));
     let own =
         pitches.map(|pitch| (period::power(places, pitch, HARMONICS), pitch)).max_by(|a, b| a.0.total_cmp(&b.0))?.1;
     let period = period::measure(places, own);
-    let posts = places.len() as f64 / POST;
-    // Two bays at least.
     (posts * period.strength.powi(2) >= CLEAR && length > 1.5 * own).then_some(period)
 }

@@ -4,6 +4,7 @@
 
 use super::blocks::as_deep;
 use super::looks::{Looks, STEP, along, frame_of};
+use super::recall::Key;
 use super::{Evidence, JunctionKind, Label};
 use crate::bands::map_each;
 use crate::grid::State;
@@ -55,21 +56,48 @@ impl Kinds {
 /// For each label how sure it is, 0 to 1.
 #[must_use]
 pub fn find_confidence(evidence: &Evidence, labels: &[Label]) -> Vec<f64> {
-    let map = Looks { grid: evidence.grid };
-    let kinds = Kinds::new(labels);
-    let sure = |label: &Label| match label {
+    let Evidence { grid, threads, recall, .. } = *evidence;
+    let ask = |map: &Looks, label: &Label| match label {
         Label::Corridor { axis, width, .. } => map.corridor(*axis, *width),
         Label::Junction { kind, at, corridors, .. } => map.junction(labels, *kind, *at, corridors),
         Label::Region { polygon, .. } => map.region(polygon),
         Label::Door { axis, .. } => map.door(*axis),
-        Label::Rack { axis, width, .. } => {
-            1.0 - (1.0 - map.rack(*axis, *width)) / (1.0 + WITNESS * kinds.others(*width) as f64)
-        }
+        Label::Rack { axis, width, .. } => map.rack(*axis, *width),
         Label::Pillar { at, width, .. } => map.pillar(*at, *width),
     };
-    let rounded = |label: &Label| (sure(label).clamp(0.0, 1.0) * 1000.0).round() / 1000.0;
+    let patches = recall.patches(grid, threads);
+    let sure = |label: &Label| {
+        let look = || {
+            let map = Looks::new(grid);
+            (ask(&map, label), map.asked())
+        };
+        recall.sure.or_look(patches, || key(labels, label), look)
+    };
+    let kinds = Kinds::new(labels);
+    let witnessed = |label: &Label| match label {
+        Label::Rack { width, .. } => 1.0 - (1.0 - sure(label)) / (1.0 + WITNESS * kinds.others(*width) as f64),
+        _ => sure(label),
+    };
+    let rounded = |label: &Label| (witnessed(label).clamp(0.0, 1.0) * 1000.0).round() / 1000.0;
     let parts: Vec<&[Label]> = labels.chunks(TOGETHER).collect();
-    map_each(parts.len(), evidence.threads, |n| parts[n].iter().map(rounded).collect::<Vec<_>>()).concat()
+    map_each(parts.len(), threads, |n| parts[n].iter().map(rounded).collect::<Vec<_>>()).concat()
+}
+
+/// The key of all that is asked about a label but for the map.
+fn key(labels: &[Label], label: &Label) -> Key {
+    let axis = |key: Key, axis: &[[f64; 2]; 2], width: f64| key.numbers(axis.as_flattened()).number(width);
+    let kind = |number| Key::default().with(number);
+    match label {
+        Label::Corridor { axis: own, width, .. } => axis(kind(0), own, *width),
+        Label::Junction { kind: own, at, corridors, .. } => {
+            let corridors = corridors.iter().filter_map(|&id| labels.get(id as usize));
+            corridors.fold(kind(1).with(*own as u64).numbers(at), |known, corridor| known.key(key(labels, corridor)))
+        }
+        Label::Region { polygon, .. } => kind(2).numbers(polygon.as_flattened()),
+        Label::Door { axis: own, .. } => axis(kind(3), own, 0.0),
+        Label::Rack { axis: own, width, .. } => axis(kind(4), own, *width),
+        Label::Pillar { at, width, .. } => kind(5).numbers(at).number(*width),
+    }
 }
 
 impl Looks<'_> {
@@ -150,7 +178,7 @@ impl Looks<'_> {
             for [x, y] in along(side, STEP) {
                 all += 1;
                 // Counter-clockwise: outside is on the right.
-                let pixel = self.grid.frame.resolution;
+                let pixel = self.resolution();
                 let near = (0..(0.2 / pixel).round().max(1.0) as usize).map(|n| (n as f64 + 0.5) * pixel);
                 bounded +=
                     usize::from(near.into_iter().any(|d| self.state([x - d * nx, y - d * ny]) == State::Occupied));

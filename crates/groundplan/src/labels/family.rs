@@ -10,6 +10,7 @@ use super::sums::What;
 use super::sweep::Sweep;
 use super::turned::Turned;
 use crate::parameters::Parameters;
+use std::cell::LazyCell;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -151,24 +152,27 @@ impl<'a> Family<'a> {
                 if !may_be(&(0..view.size[0])) {
                     continue;
                 }
-                let key = || {
-                    let mouths = sides.map(|side| &mouths[side]);
-                    let key = self.key(across).with(mouths[0].len() as u64).with(mouths[1].len() as u64);
-                    let ends = mouths.into_iter().flatten().flat_map(|mouth| [mouth.start, mouth.end]);
-                    ends.fold(key, |key, end| key.with(end as u64))
-                };
-                let strips = recall.strips.or_find(key, || {
-                    let own = self.seen_in(near.view());
-                    let strips = |open: Range<usize>| {
-                        let columns = own.columns(sides, open.clone());
-                        own.strips(&columns, open.start, across)
-                    };
-                    let open = own.open(across).into_iter().filter(may_be);
-                    open.flat_map(strips).filter(led_to).map(|strip| (strip, true)).collect()
-                });
-                found.extend(strips.iter().map(|(strip, whole)| Candidate::new(view, sides, strip, *whole)));
+                let key = LazyCell::new(|| self.key(across));
+                let open = recall.open.or_find(|| *key, || self.seen_in(near.view()).open(across));
+                // Stretch by stretch: a mouth that has changed bears on no other.
+                for open in open.into_iter().filter(may_be) {
+                    let key = || sides.iter().fold(*key, |key, &side| self.key_in(key, side, &mouths[side], &open));
+                    let strips = recall.strips.or_find(key, || {
+                        let own = self.seen_in(near.view());
+                        let strips = own.strips(&own.columns(sides, open.clone()), open.start, across).into_iter();
+                        strips.filter(led_to).map(|strip| (strip, true)).collect()
+                    });
+                    found.extend(strips.iter().map(|(strip, whole)| Candidate::new(view, sides, strip, *whole)));
+                }
             }
         })
+    }
+
+    /// A key with all that mouths do to a side within some columns.
+    fn key_in(&self, key: Key, side: usize, mouths: &[Range<usize>], columns: &Range<usize>) -> Key {
+        let within = mouths.iter().filter(|mouth| columns.start < mouth.end && mouth.start < columns.end);
+        let key = key.bits(&self.sides[side].walls, columns.clone());
+        within.fold(key, |key, mouth| key.with(mouth.start as u64).with(mouth.end as u64))
     }
 
     /// The mouths within some columns that may open into a strip so wide: beside wide aisles, what is narrow is in a row.

@@ -1,7 +1,5 @@
 //! Looking along straight lines over the map, from sample to sample, over what is all alike in one leap.
 
-use super::patches::Patches;
-use super::recall::Key;
 use crate::grid::{Grid, State};
 use crate::tiles::{SIDE, Tiles};
 use std::ops::Range;
@@ -26,7 +24,6 @@ pub struct Look<'a> {
     reaches: Vec<u8>,
     /// Corners of all that was seen of the map.
     seen: Vec<[f64; 2]>,
-    patches: Option<Patches>,
 }
 
 impl<'a> Look<'a> {
@@ -42,20 +39,7 @@ impl<'a> Look<'a> {
             across: tiles.width,
             reaches: tiles.reaches(),
             seen: tiles.seen(),
-            patches: None,
         }
-    }
-
-    /// The same with keys of what is seen.
-    pub fn with_keys(self, threads: usize) -> Self {
-        let patches = Patches::new(&self.rows, &self.samples, threads);
-        Self { patches: Some(patches), ..self }
-    }
-
-    /// The key of so many samples of lanes side by side, where there are keys: of the first and the last lane it is said
-    /// where they begin.
-    pub fn key(&self, lanes: [[f64; 2]; 2], step: [f64; 2], count: usize) -> Key {
-        self.patches.as_ref().map_or(Key::default(), |patches| patches.under(lanes, step, count))
     }
 
     /// Points, in pixels of the grid, that have all between them that was seen of the map; none where nothing was.

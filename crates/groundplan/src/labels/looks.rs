@@ -1,8 +1,10 @@
 //! The map asked place by place: what is free, what stands about a face, and how far posts come back along one.
 
+use super::patches::Area;
 use super::runs::runs;
 use crate::grid::{Grid, State};
 use crate::subdivision::distance;
+use std::cell::Cell;
 
 /// Looks are this far apart, metres.
 pub const STEP: f64 = 0.2;
@@ -18,12 +20,31 @@ const OFF: f64 = 0.15;
 
 /// The map that is asked, of places in its frame.
 pub struct Looks<'a> {
-    pub grid: &'a Grid<'a>,
+    grid: &'a Grid<'a>,
+    /// What has been asked of it.
+    asked: Cell<Area>,
 }
 
-impl Looks<'_> {
+impl<'a> Looks<'a> {
+    /// At a map of which nothing has been asked yet.
+    pub fn new(grid: &'a Grid<'a>) -> Self {
+        Self { grid, asked: Cell::new(Area::NONE) }
+    }
+
+    /// All that has been asked lies in it.
+    pub fn asked(&self) -> Area {
+        self.asked.get()
+    }
+
+    /// Side of a pixel, metres.
+    pub fn resolution(&self) -> f64 {
+        self.grid.frame.resolution
+    }
+
     pub fn state(&self, point: [f64; 2]) -> State {
-        self.grid.state_at(point)
+        let Some(pixel) = self.grid.pixel_at(point) else { return State::Unknown };
+        self.asked.set(self.asked.get().with(pixel));
+        self.grid.state_of(pixel)
     }
 
     pub fn is_free(&self, point: [f64; 2]) -> bool {

@@ -247,8 +247,9 @@ impl<'scope, 'a: 'scope> Ground<'scope, 'a> {
     /// Begins to look at a map.
     pub fn start(side: Side<'scope, '_>, grid: &'scope Grid<'a>, threads: usize, recall: &'scope Recall) -> Self {
         let look = side.start(move || {
-            let look = Look::new(grid, &Tiles::new(grid, threads));
-            if recall.keeps() { look.with_keys(threads) } else { look }
+            // Keys of the map are made here, where there are threads for them.
+            recall.patches(grid, threads);
+            Look::new(grid, &Tiles::new(grid, threads))
         });
         Self { look, space: side.start(move || Space::new(grid, threads, recall)) }
     }

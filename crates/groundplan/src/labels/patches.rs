@@ -2,13 +2,31 @@
 
 use super::recall::Key;
 use crate::bands::{BAND_ROWS, map_bands};
+use crate::grid::Grid;
 
 /// Pixels along the side of a patch.
 const SIDE: usize = BAND_ROWS;
 /// What lies so many pixels beside the lanes is under them too: more than is rounded.
 const BESIDE: f64 = 2.0;
 
+/// Columns and rows of pixels of the map, from the first to the last one of each; none at first.
+#[derive(Clone, Copy, Debug)]
+pub struct Area([[usize; 2]; 2]);
+
+impl Area {
+    pub const NONE: Self = Self([[usize::MAX, 0]; 2]);
+
+    /// With a pixel more.
+    pub fn with(self, pixel: [usize; 2]) -> Self {
+        Self([0, 1].map(|axis| {
+            let ([from, to], pixel) = (self.0[axis], pixel[axis]);
+            [from.min(pixel), to.max(pixel)]
+        }))
+    }
+}
+
 /// Keys of patches, row after row.
+#[derive(Debug)]
 pub struct Patches {
     /// Patches along each axis.
     size: [usize; 2],
@@ -16,17 +34,27 @@ pub struct Patches {
 }
 
 impl Patches {
-    /// From the rows of a map, of which each pixel's value has a meaning.
-    pub fn new(rows: &[&[u8]], meanings: &[u8; 256], threads: usize) -> Self {
-        let across = rows.first().map_or(0, |row| row.len().div_ceil(SIDE));
-        let keys = map_bands(rows.len(), threads, |band| {
-            let mut keys = vec![Key::default().bytes(meanings); across];
-            for row in &rows[band] {
+    pub fn new(grid: &Grid, threads: usize) -> Self {
+        let across = grid.frame.width.div_ceil(SIDE);
+        let meanings = Key::default().bytes(&grid.table.states.map(|state| state as u8));
+        let keys = map_bands(grid.frame.height, threads, |band| {
+            let mut keys = vec![meanings; across];
+            for row in band.map(|y| grid.row(y)) {
                 keys.iter_mut().zip(row.chunks(SIDE)).for_each(|(key, pixels)| *key = key.bytes(pixels));
             }
             keys
         });
         Self { size: [across, keys.len()], keys: keys.concat() }
+    }
+
+    /// The key of all patches that a part of the map lies in.
+    pub fn over(&self, part: Area) -> Key {
+        let [columns, rows] = [0, 1].map(|axis| {
+            let [from, to] = part.0[axis];
+            from / SIDE..(to / SIDE + 1).min(self.size[axis])
+        });
+        let row = |y: usize| &self.keys[y * self.size[0]..][..self.size[0]];
+        rows.flat_map(|y| row(y).get(columns.clone()).unwrap_or_default()).copied().fold(Key::default(), Key::key)
     }
 
     /// The key of all that so many samples of lanes side by side lie on, each a `step` after the one before: of the first
@@ -60,7 +88,7 @@ impl Patches {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::{Frame, Grid, Table};
+    use crate::grid::{Frame, Table};
     use crate::labels::look::Look;
     use crate::tiles::Tiles;
 
@@ -68,10 +96,8 @@ mod tests {
     fn lanes_that_see_a_changed_pixel_have_another_key() {
         let (width, height) = (300, 200);
         let (table, frame) = (Table::trinary(), Frame::new(width, height, 0.05, [0.0; 3]));
-        let meanings: [u8; 256] = std::array::from_fn(|n| n as u8);
         let of = |pixels: &[u8], start: [f64; 2], step: [f64; 2]| {
             let grid = Grid::new(pixels, true, &table, frame);
-            let rows: Vec<&[u8]> = (0..height).map(|y| grid.row(y)).collect();
             let lanes = [start, [start[0] - 9.0 * step[1], start[1] + 9.0 * step[0]]];
             let look = Look::new(&grid, &Tiles::new(&grid, 1));
             let seen: [_; 10] = std::array::from_fn(|n| {
@@ -80,7 +106,7 @@ mod tests {
                 look.along([start[0] - n * step[1], start[1] + n * step[0]], step, &mut cells);
                 cells
             });
-            (Patches::new(&rows, &meanings, 1).under(lanes, step, 400), seen)
+            (Patches::new(&grid, 1).under(lanes, step, 400), seen)
         };
         let mut state = 1u64;
         let mut random = |most: f64| {

@@ -4,16 +4,21 @@
 //! A survey looks into what another one kept before it looks at the pixels, so the answer is the same with and without.
 
 use super::corridors::Strip;
+use super::patches::{Area, Patches};
+use super::period::Period;
 use super::ragged::Held;
 use super::rooms::{Bar, Width};
 use super::squares::Band;
 use super::sums::Told;
-use crate::bits::Bits;
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use crate::bits::{Bits, WORD, lowest};
+use crate::grid::Grid;
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+use std::ops::Range;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// What something was made from, in 128 bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Key(u128);
 
 /// An odd number without a pattern: the digits of pi.
@@ -29,6 +34,10 @@ impl Key {
         self.with(value.to_bits())
     }
 
+    pub fn numbers(self, values: &[f64]) -> Self {
+        values.iter().copied().fold(self.with(values.len() as u64), Self::number)
+    }
+
     pub fn key(self, other: Self) -> Self {
         self.with(other.0 as u64).with((other.0 >> 64) as u64)
     }
@@ -40,8 +49,10 @@ impl Key {
         chunks.fold(self.with(bytes.len() as u64), |key, chunk| key.with(word(chunk))).with(rest)
     }
 
-    pub fn bits(self, bits: &Bits) -> Self {
-        bits.words().iter().fold(self.with(bits.words().len() as u64), |key, &word| key.with(word))
+    /// With some of a set's bits.
+    pub fn bits(self, bits: &Bits, some: Range<usize>) -> Self {
+        let word = |at: usize| bits.word(at) & lowest(some.end - at);
+        some.clone().step_by(WORD).map(word).fold(self.with(some.start as u64).with(some.end as u64), Self::with)
     }
 }
 
@@ -49,67 +60,103 @@ impl Key {
 type SeenRows = (Arc<Band>, Vec<Told>);
 
 /// What was found, by what it was found from.
-type Known<T> = Arc<BTreeMap<Key, T>>;
+type Known<T> = Arc<HashMap<Key, T, BuildHasherDefault<Place>>>;
 
-/// What a survey found and keeps for another one of the same parameters.
-#[derive(Clone, Debug, Default)]
-pub struct Memory {
-    /// Pieces of a strip between two lines, and whether they are corridors.
-    strips: Known<Vec<(Strip, bool)>>,
-    ragged: Known<Vec<(Strip, Held)>>,
-    narrows: Known<Vec<Bar>>,
-    /// Of runs of the free space along rows.
-    widths: Known<Vec<Width>>,
-    /// Rows of views.
-    views: Known<SeenRows>,
+/// What is known by keys is found by them as they are: they have no pattern.
+#[derive(Debug, Default)]
+struct Place(u64);
+
+impl Hasher for Place {
+    fn write_u128(&mut self, key: u128) {
+        self.0 = key as u64;
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        self.0 = bytes.iter().fold(self.0, |place, &byte| place << 8 ^ u64::from(byte));
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
 }
 
-/// What is known from before, and what is kept for later.
-#[derive(Debug, Default)]
-pub struct Recall {
-    pub(super) strips: Found<Vec<(Strip, bool)>>,
-    pub(super) ragged: Found<Vec<(Strip, Held)>>,
-    pub(super) narrows: Found<Vec<Bar>>,
-    pub(super) widths: Found<Vec<Width>>,
-    pub(super) views: Found<SeenRows>,
+/// What is kept, of each kind what was found by its keys.
+macro_rules! kinds {
+    ($($(#[$about:meta])* $name:ident: $of:ty,)*) => {
+        /// What a survey found and keeps for another one of the same parameters.
+        #[derive(Clone, Debug, Default)]
+        pub struct Memory {
+            $($(#[$about])* $name: Known<$of>,)*
+        }
+
+        /// What is known from before, and what is kept for later.
+        #[derive(Debug, Default)]
+        pub struct Recall {
+            $($(#[$about])* pub(super) $name: Found<$of>,)*
+            /// Keys of the map's patches, once they are asked for.
+            patches: OnceLock<Patches>,
+        }
+
+        impl Recall {
+            /// With a memory, be it empty, all that is found is kept; without one nothing is.
+            #[must_use]
+            pub fn new(memory: Option<Memory>) -> Self {
+                let with = |known: Memory| Self { $($name: Found::new(known.$name),)* patches: OnceLock::new() };
+                memory.map_or_else(Self::default, with)
+            }
+
+            /// What was found this time, and nothing else.
+            #[must_use]
+            pub fn memory(self) -> Memory {
+                Memory { $($name: self.$name.known(),)* }
+            }
+        }
+    };
+}
+
+kinds! {
+    /// Pieces of a strip between two lines, and whether they are corridors.
+    strips: Vec<(Strip, bool)>,
+    /// Stretches of such strips that are not closed, from column to column.
+    open: Vec<Range<usize>>,
+    ragged: Vec<(Strip, Held)>,
+    narrows: Vec<Bar>,
+    /// Of runs of the free space along rows.
+    widths: Vec<Width>,
+    /// Rows of views.
+    views: SeenRows,
+    /// How strongly what stands along a row recurs at some frequencies, and the period of a row.
+    strengths: Arc<Vec<f64>>,
+    periods: Option<Period>,
+    /// How sure a label is, and by what.
+    sure: Looked<f64>,
 }
 
 impl Recall {
-    /// With a memory, be it empty, all that is found is kept; without one nothing is.
-    #[must_use]
-    pub fn new(memory: Option<Memory>) -> Self {
-        memory.map_or_else(Self::default, |known| Self {
-            strips: Found::new(known.strips),
-            ragged: Found::new(known.ragged),
-            narrows: Found::new(known.narrows),
-            widths: Found::new(known.widths),
-            views: Found::new(known.views),
-        })
-    }
-
     /// True when what is found is kept, so that it has keys.
     #[must_use]
     pub fn keeps(&self) -> bool {
         self.strips.now.is_some()
     }
 
-    /// What was found this time, and nothing else.
-    #[must_use]
-    pub fn memory(self) -> Memory {
-        Memory {
-            strips: self.strips.known(),
-            ragged: self.ragged.known(),
-            narrows: self.narrows.known(),
-            widths: self.widths.known(),
-            views: self.views.known(),
-        }
+    /// Keys of the patches of the map that is surveyed, where what is found is kept.
+    pub(super) fn patches(&self, grid: &Grid, threads: usize) -> Option<&Patches> {
+        self.keeps().then(|| self.patches.get_or_init(|| Patches::new(grid, threads)))
     }
+}
+
+/// What was found of a map by looking at some part of it, which had such a key.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Looked<T> {
+    pub found: T,
+    part: Area,
+    key: Key,
 }
 
 #[derive(Debug)]
 pub(super) struct Found<T> {
     before: Known<T>,
-    now: Option<Mutex<BTreeMap<Key, T>>>,
+    now: Option<Mutex<HashMap<Key, T, BuildHasherDefault<Place>>>>,
 }
 
 impl<T> Default for Found<T> {
@@ -130,17 +177,36 @@ impl<T: Clone> Found<T> {
 
     /// What was found from the same before, or else what is found now.
     pub fn or_find(&self, key: impl FnOnce() -> Key, find: impl FnOnce() -> T) -> T {
+        self.if_so(key, |_| true, find)
+    }
+
+    /// The same, if what was found before holds.
+    fn if_so(&self, key: impl FnOnce() -> Key, holds: impl FnOnce(&T) -> bool, find: impl FnOnce() -> T) -> T {
         let Some(now) = &self.now else { return find() };
         let key = key();
-        let found = self.before.get(&key).cloned().unwrap_or_else(find);
+        let found = self.before.get(&key).filter(|before| holds(before)).cloned().unwrap_or_else(find);
         now.lock().unwrap_or_else(PoisonError::into_inner).insert(key, found.clone());
         found
+    }
+}
+
+impl<T: Clone> Found<Looked<T>> {
+    /// What was found from the same by looking at a part of the map that is as it was, or else what is found now; `look`
+    /// says what part it has looked at.
+    pub fn or_look(&self, patches: Option<&Patches>, key: impl FnOnce() -> Key, look: impl FnOnce() -> (T, Area)) -> T {
+        let of = |part| patches.map_or(Key::default(), |patches| patches.over(part));
+        let looked = || {
+            let (found, part) = look();
+            Looked { found, part, key: of(part) }
+        };
+        self.if_so(key, |before| before.key == of(before.part), looked).found
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grid::{Frame, Table};
 
     #[test]
     fn what_was_found_before_is_not_looked_for() {
@@ -160,6 +226,32 @@ mod tests {
     }
 
     #[test]
+    fn what_was_found_by_looking_holds_until_something_changes_there() {
+        let (width, height) = (200, 100);
+        let (table, frame) = (Table::trinary(), Frame::new(width, height, 0.05, [0.0; 3]));
+        let mut pixels = vec![254; width * height];
+        let mut memory = Memory::default();
+        let mut looks = |pixels: &[u8]| {
+            let grid = Grid::new(pixels, true, &table, frame);
+            let recall = Recall::new(Some(memory.clone()));
+            let mut looked = false;
+            let look = || {
+                looked = true;
+                (0.5, Area::NONE.with([3, 90]).with([70, 95]))
+            };
+            assert_eq!(recall.sure.or_look(recall.patches(&grid, 1), Key::default, look), 0.5);
+            memory = recall.memory();
+            looked
+        };
+        assert!(looks(&pixels));
+        assert!(!looks(&pixels));
+        for (x, y, is_there) in [(150, 80, false), (10, 10, false), (60, 93, true), (199, 99, false), (3, 90, true)] {
+            pixels[y * width + x] = 0;
+            assert_eq!(looks(&pixels), is_there, "{x}, {y}");
+        }
+    }
+
+    #[test]
     fn keys_tell_apart_what_differs_anywhere() {
         let row: Vec<u8> = (0..100).map(|n| n % 3).collect();
         let mut keys = vec![Key::default().bytes(&row), Key::default().bytes(&row[1..]), Key::default()];
@@ -173,7 +265,7 @@ mod tests {
             bits.insert(n);
             bits
         };
-        keys.extend((0..130).map(|n| Key::default().bits(&only(n))));
+        keys.extend((0..130).map(|n| Key::default().bits(&only(n), 0..130)));
         let count = keys.len();
         keys.sort_unstable();
         keys.dedup();

@@ -4,6 +4,7 @@
 use super::Evidence;
 use super::grounds::Grounds;
 use super::look::{LANES, Look};
+use super::patches::Patches;
 use super::racks::Row;
 use super::recall::Key;
 use super::shares::Shares;
@@ -169,9 +170,11 @@ impl Turned {
             look.cells(&lanes[..samples], steps[0], first, row);
             self.take(n, first, row);
         };
+        let patches = evidence.recall.patches(evidence.grid, evidence.threads);
         let key = |rows: Range<usize>| {
             let lanes = [lane(rows.start * samples), lane(rows.end * samples - 1)];
-            let key = look.key(lanes, steps[0], self.size[0] * samples).with(rows.len() as u64).with(samples as u64);
+            let under = |patches: &Patches| patches.under(lanes, steps[0], self.size[0] * samples);
+            let key = patches.map_or(Key::default(), under).with(rows.len() as u64).with(samples as u64);
             let [low, high] = [rows.start, rows.end].map(|n| self.start[1] + n as f64 * self.cell);
             self.grounds.key(key, &rows, [low, high])
         };
@@ -263,7 +266,8 @@ impl Turned {
         let numbers = [self.angle, self.cell, self.start[0], self.start[1]];
         let lines = self.offsets.iter().zip(self.covered.iter()).zip(self.touched.iter());
         let key = |((offset, covered), touched): ((&f64, &Bits), &Bits)| {
-            Key::default().number(*offset).bits(covered).bits(touched)
+            let columns = 0..self.size[0];
+            Key::default().number(*offset).bits(covered, columns.clone()).bits(touched, columns)
         };
         (numbers.into_iter().fold(pitch.with(self.direction as u64), Key::number), Arc::new(lines.map(key).collect()))
     }

@@ -6,7 +6,6 @@ use super::clearance::{Clearance, Rows, within};
 use super::gaps::Bar;
 use super::raster::Raster;
 use crate::bands::map_each_in;
-use crate::bits::{WORD, lowest};
 use crate::sets::Sets;
 use std::ops::Range;
 
@@ -62,11 +61,9 @@ pub fn find(raster: &Raster, clearance: &Clearance, threads: usize, recall: &Rec
 
 /// What is free within a window.
 fn seen(raster: &Raster, [columns, rows]: &[Range<usize>; 2]) -> Key {
-    let start = Key::default().number(raster.resolution).with(columns.start as u64).with(rows.start as u64);
-    let places = rows.clone().flat_map(|y| columns.clone().step_by(WORD).map(move |x| (x, y)));
-    places.fold(start.with(columns.end as u64).with(rows.end as u64), |key, (x, y)| {
-        key.with(raster.free.word(y * raster.width + x) & lowest(columns.end - x))
-    })
+    let start = Key::default().number(raster.resolution).with(raster.width as u64);
+    let row = |y: usize| y * raster.width + columns.start..y * raster.width + columns.end;
+    rows.clone().map(row).fold(start, |key, row| key.bits(&raster.free, row))
 }
 
 /// Part of the free space.
