@@ -5,6 +5,7 @@ use super::corridors::Strip;
 use super::racks::{Crossings, Row, SAME, lines_behind, without};
 use super::turned::Turned;
 use super::whole::{RIM, trimmed};
+use crate::bands::map_bands;
 
 /// Behind a wall from so far to so far off, metres, more than this share is not free.
 const BEYOND: [f64; 2] = [0.2, 0.7];
@@ -21,11 +22,11 @@ const SOLID: f64 = 0.95;
 const BEFORE: f64 = 0.3;
 
 /// Rows between a corridor and a wall that goods hide but for gaps between them, and that is seen beyond their ends.
-pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], known: &[Row]) -> Vec<Row> {
+pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], known: &[Row], threads: usize) -> Vec<Row> {
     let crossings = Crossings::new(views, strips, extents);
     let rows = placed(views, known.iter().map(Row::place));
-    let mut found = Vec::new();
-    for (n, strip) in strips.iter().enumerate() {
+    let beside = |n: usize| {
+        let (strip, mut found) = (&strips[n], Vec::new());
         let view = &views[strip.direction];
         for side in [0, 1] {
             let own = strip.across[side];
@@ -51,8 +52,9 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], known: &[R
                 }
             }
         }
-    }
-    found
+        found
+    };
+    map_bands(strips.len(), threads, |some| some.flat_map(beside).collect::<Vec<_>>()).concat()
 }
 
 /// Where goods stand that hide a wall on one side of a row.

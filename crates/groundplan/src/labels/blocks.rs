@@ -6,6 +6,7 @@ use super::near::Near;
 use super::racks::{DEPTH, Row, apart};
 use super::runs::{close, runs};
 use super::turned::Turned;
+use crate::bands::map_bands;
 use crate::bits::Bits;
 use std::ops::Range;
 
@@ -61,8 +62,8 @@ struct Block {
 }
 
 /// The blocks of a kind that stand in rows. Rows of racks that are known already count for their kind.
-pub fn find(views: &[Turned], known: &[Row]) -> Vec<Row> {
-    let standing = |fronts: Fronts| views.iter().flat_map(|view| candidates(view, fronts)).collect();
+pub fn find(views: &[Turned], known: &[Row], threads: usize) -> Vec<Row> {
+    let standing = |fronts: Fronts| views.iter().flat_map(|view| candidates(view, fronts, threads)).collect();
     let found = apart(views, standing([true, true]));
     let count = found.len();
     let others = overlapping(views, known, &found);
@@ -185,7 +186,7 @@ fn overlap(views: &[Turned], one: &Row, two: &Row) -> bool {
 }
 
 /// Pairs of lines between which something stands, with floor before it.
-fn candidates(view: &Turned, fronts: Fronts) -> Vec<Row> {
+fn candidates(view: &Turned, fronts: Fronts, threads: usize) -> Vec<Row> {
     let columns = |metres: f64| (metres / view.cell).round() as usize;
     let least = columns(OBLONG.0);
     let long = |touched: &Bits| {
@@ -194,8 +195,8 @@ fn candidates(view: &Turned, fronts: Fronts) -> Vec<Row> {
         runs
     };
     let runs: Vec<Vec<Range<usize>>> = view.touched.iter().map(long).collect();
-    let mut found = Vec::new();
-    for (n, &low) in view.offsets.iter().enumerate() {
+    let above = |n: usize| {
+        let (low, mut found) = (view.offsets[n], Vec::new());
         for (m, &high) in view.offsets.iter().enumerate().skip(n + 1) {
             if high - low > DEPTH.1 {
                 break;
@@ -212,8 +213,9 @@ fn candidates(view: &Turned, fronts: Fronts) -> Vec<Row> {
                 }
             }
         }
-    }
-    found
+        found
+    };
+    map_bands(view.offsets.len(), threads, |some| some.flat_map(above).collect::<Vec<_>>()).concat()
 }
 
 /// Of a range of columns between two lines, the pieces that stand free.

@@ -10,6 +10,7 @@ use super::sections::{Columns, Free, WIDTH};
 use super::through::{Seen, Through};
 use super::turned::Turned;
 use super::widths::Widths;
+use crate::bands::map_bands;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
 const IN_LINE: (f64, f64) = (0.7, 0.5);
@@ -108,20 +109,24 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: 
         };
         let aisles: Vec<Strip> = (0..strips.len()).filter(is_aisle).map(|n| strips[n].clone()).collect();
         let extents: Vec<[f64; 2]> = aisles.iter().map(|strip| strip.along).collect();
-        for row in racks::between(views, &aisles, &extents) {
-            let Some(between) = row.between else { continue };
-            let columns = Columns::new(look, &evidence.grid.frame, [view, other], &row, view.pitch.or(common));
+        let rows = racks::between(views, &aisles, &extents);
+        let crossing = |row: &Row| -> Vec<(usize, Crossed)> {
+            let Some(between) = row.between else { return Vec::new() };
+            let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, view.pitch.or(common));
             let ways = columns.ways();
             let aisles = between.map(|n| &aisles[n]);
             // Then the rows might as well be what lies between two ways across the rows.
             let longest = aisles.iter().map(|aisle| aisle.length()).fold(f64::INFINITY, f64::min);
             let times = if view.pitch.is_some() { LONGER } else { 1.0 };
-            let judged = |strip: &Strip| strip.length() < times * longest;
-            for n in leading_across([view, other], &placed, &row, widest) {
-                if judged(&strips[n]) {
-                    crossed[n].extend(cross([view, other], &row, (&columns, &ways), &strips[n], aisles));
-                }
-            }
+            let near = leading_across([view, other], &placed, row, widest).into_iter();
+            let judged = near.filter(|&n| strips[n].length() < times * longest);
+            let cross = |n: usize| cross([view, other], row, (&columns, &ways), &strips[n], aisles);
+            judged.filter_map(|n| cross(n).map(|crossed| (n, crossed))).collect()
+        };
+        let found =
+            map_bands(rows.len(), evidence.threads, |some| rows[some].iter().flat_map(crossing).collect::<Vec<_>>());
+        for (n, row) in found.into_iter().flatten() {
+            crossed[n].push(row);
         }
     }
     strips.into_iter().zip(crossed).flat_map(|(strip, crossed)| ways(strip, crossed)).collect()

@@ -4,6 +4,7 @@ use super::corridors::{self, Strip};
 use super::near::Near;
 use super::turned::{Turned, least_sine};
 use super::{JunctionKind, barriers};
+use crate::bands::map_bands;
 use crate::grid::{angle_between, turned};
 use crate::subdivision::distance;
 use std::collections::BTreeMap;
@@ -59,7 +60,7 @@ const SAME_WAY_DEG: f64 = 30.0;
 const SQUARE_DEG: f64 = 55.0;
 
 /// Junctions of the corridors, in the order of the corridors.
-pub fn find(views: &[Turned], strips: &[Strip]) -> Vec<Meeting> {
+pub fn find(views: &[Turned], strips: &[Strip], threads: usize) -> Vec<Meeting> {
     // Where two may meet both their centre lines lead, each from as far as it may.
     let widest = corridors::widest(strips);
     let near = SHORT + widest / 2.0 / least_sine(views, LEAST_SINE);
@@ -68,12 +69,13 @@ pub fn find(views: &[Turned], strips: &[Strip]) -> Vec<Meeting> {
         .map(|s| views[s.direction].rectangle([s.along[0] - near, s.along[1] + near], [s.middle(); 2]))
         .collect();
     let beside = Near::polygons(&lines);
-    let mut met: Vec<Meeting> = Vec::new();
-    for a in 0..strips.len() {
-        let others = beside.beside(&lines[a]).into_iter().map(|b| b as usize).filter(|b| *b > a);
-        let others = others.filter(|b| strips[a].direction != strips[*b].direction);
-        met.extend(others.filter_map(|b| meet(views, strips, [a, b])));
-    }
+    let met_by = |a: usize| {
+        let others = beside.beside(&lines[a]).into_iter().map(|b| b as usize).filter(move |b| *b > a);
+        let others = others.filter(move |b| strips[a].direction != strips[*b].direction);
+        others.filter_map(move |b| meet(views, strips, [a, b]))
+    };
+    let met = map_bands(strips.len(), threads, |some| some.flat_map(met_by).collect::<Vec<_>>());
+    let mut met = met.concat();
     let nearest = nearest(&met, strips.len());
     met.retain(|meeting| meeting.is_led_to(&nearest));
     let mut found: Vec<Meeting> = Vec::new();

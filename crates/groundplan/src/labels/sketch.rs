@@ -126,35 +126,36 @@ impl Plan {
     fn of(evidence: &Evidence, look: &Look, views: &[Turned], on_legs: &[Row]) -> Self {
         let found = joined::join(views, corridors::find(evidence, views), evidence.parameters.labels_min_width);
         let found = gates::without_bays(evidence, look, views, found);
-        let mut plan = Self::new(views, found);
+        let threads = evidence.threads;
+        let mut plan = Self::new(views, found, threads);
         let gates = gates::find(evidence, look, views, &plan.strips, &plan.rows);
         let (known, more) = (plan.strips.len(), gates.len());
         plan.strips.extend(gates);
         plan.strips = widths::alike(views, plan.strips);
         if more > 0 || plan.strips.len() < known {
-            plan = Self::new(views, plan.strips);
+            plan = Self::new(views, plan.strips, threads);
         }
-        plan.racks = plan.find_racks(views, on_legs);
+        plan.racks = plan.find_racks(views, on_legs, threads);
         let narrow = narrowed::past(views, &plan.strips, &plan.racks, evidence.parameters.labels_min_width);
         if narrow != plan.strips {
-            plan = Self::new(views, narrow);
-            plan.racks = plan.find_racks(views, on_legs);
+            plan = Self::new(views, narrow, threads);
+            plan.racks = plan.find_racks(views, on_legs, threads);
         }
         plan
     }
 
-    fn find_racks(&self, views: &[Turned], on_legs: &[Row]) -> Vec<Row> {
-        whole::find(views, &self.strips, &self.extents, &self.rows, on_legs)
+    fn find_racks(&self, views: &[Turned], on_legs: &[Row], threads: usize) -> Vec<Row> {
+        whole::find(views, &self.strips, &self.extents, [&self.rows, on_legs], threads)
     }
 
-    fn new(views: &[Turned], strips: Vec<Strip>) -> Self {
-        let (mut strips, meetings) = connected(views, strips);
+    fn new(views: &[Turned], strips: Vec<Strip>, threads: usize) -> Self {
+        let (mut strips, meetings) = connected(views, strips, threads);
         // A corridor goes on to what it meets, and there it may be what another one meets.
         let longer = extents(views, &strips, &meetings);
         for (strip, along) in strips.iter_mut().zip(longer) {
             strip.along = [strip.along[0].min(along[0]), strip.along[1].max(along[1])];
         }
-        let (strips, meetings) = connected(views, strips);
+        let (strips, meetings) = connected(views, strips, threads);
         let mut extents = extents(views, &strips, &meetings);
         let ends = junctions::ends(views, &strips, &meetings);
         for &(n, side, place) in &ends {
@@ -167,10 +168,10 @@ impl Plan {
 
 /// A strip that leads nowhere is a niche: it goes, and what met it is judged again. When none is left, so do two niches
 /// that face each other across the only corridor that they meet.
-fn connected(views: &[Turned], mut strips: Vec<Strip>) -> (Vec<Strip>, Vec<Meeting>) {
+fn connected(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Strip>, Vec<Meeting>) {
     loop {
         let placed = placed(views, strips.iter().map(Strip::place));
-        let meetings = junctions::find(views, &strips);
+        let meetings = junctions::find(views, &strips, threads);
         let met = junctions::of_each(&meetings, strips.len());
         let is_shut = |n: usize| (0..2).all(|side| junctions::is_shut(views, &strips[n], side));
         let goes_on =

@@ -31,11 +31,17 @@ const INSET: f64 = 0.3;
 const UNKNOWN: f64 = 0.965;
 const HIDDEN: f64 = 0.4;
 
-/// The racks of a place, of which those that stand on legs are known.
-pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], rows: &[Row], on_legs: &[Row]) -> Vec<Row> {
+/// The racks of a place; the rows between its corridors are known, and the racks that stand on legs.
+pub fn find(
+    views: &[Turned],
+    strips: &[Strip],
+    extents: &[[f64; 2]],
+    [rows, on_legs]: [&[Row]; 2],
+    threads: usize,
+) -> Vec<Row> {
     let mut known = without_walls(views, rows);
     if racks::are_here(&known, extents) && racks::are_here(&of_a_kind(&known), extents) {
-        let at_walls = at_walls::find(views, strips, extents, &known);
+        let at_walls = at_walls::find(views, strips, extents, &known, threads);
         known.extend(at_walls);
     } else {
         known.clear();
@@ -47,7 +53,7 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], rows: &[Ro
         Some(if row.between.is_some() { followed(view, &crossings, &row) } else { row })
     };
     let found: Vec<Row> = known.iter().filter_map(whole).collect();
-    let mut blocks = blocks::find(views, &found);
+    let mut blocks = blocks::find(views, &found, threads);
     let met = blocks::overlapping(views, &blocks, on_legs);
     let mut met = met.into_iter();
     blocks.retain(|_| met.next().is_some_and(|racks| racks.is_empty()));

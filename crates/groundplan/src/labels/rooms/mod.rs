@@ -218,7 +218,7 @@ pub fn find(
     let doorways = doorways(raster, &numbers, cells.openings);
     let fine = Fine::new(evidence.grid, raster, numbers, regions.len());
     let faces = faces(evidence, division, &fine, regions.len());
-    let mut outlines = outlines::find(&fine, regions.len());
+    let mut outlines = outlines::find(&fine, regions.len(), evidence.threads);
     let square = evidence.grid.frame.resolution.powi(2);
     let places: Vec<_> = regions.iter().map(|region| (region.place, region.pixels as f64)).collect();
     let mut doors_of = vec![0; regions.len() + 1];

@@ -2,6 +2,7 @@
 //! than what lies between two borders, so that no two outlines cross.
 
 use super::fine::Fine;
+use crate::bands::map_each;
 use crate::bits::Bits;
 use crate::labels::outline::area;
 
@@ -12,16 +13,29 @@ type Point = [i64; 2];
 /// The middles of the sides of pixels that two borders run along are 0.7 pixels apart at least.
 const TOLERANCE: (i128, i128) = (49, 100);
 
+/// So many stretches of lower sides are worth a thread's while.
+const MANY: usize = 1 << 10;
+
 /// Rings in the grid's pixels.
 type Rings = Vec<Vec<[f64; 2]>>;
 
 /// The rings around each region by its number, the outer one first, counter-clockwise, then its holes.
-pub fn find(fine: &Fine, count: usize) -> Vec<Rings> {
+pub fn find(fine: &Fine, count: usize, threads: usize) -> Vec<Rings> {
+    let starts = starts(fine);
+    // Each thread goes round regions of its own.
+    let parts = threads.min(starts.len() / MANY + 1).max(1);
+    let mut made =
+        map_each(parts, threads, |part| rings(fine, count, &starts, |number| number as usize % parts == part));
+    (0..=count).map(|number| std::mem::take(&mut made[number % parts][number])).collect()
+}
+
+/// Those of some regions.
+fn rings(fine: &Fine, count: usize, starts: &[u32], is_own: impl Fn(u32) -> bool) -> Vec<Rings> {
     let mut rings: Vec<Rings> = vec![Vec::new(); count + 1];
     // Every ring has a lower side on it, and of each such stretch all that lies side by side.
-    let mut seen = Seen::new(fine);
+    let mut seen = Seen { starts, passed: Bits::new(starts.len()) };
     fine.numbers.lower_sides(|run, pixels| {
-        if !seen.contains(pixels.start) {
+        if is_own(run.number) && !seen.contains(pixels.start) {
             let ring = Tracer { fine, region: run.number }.trace((pixels.start, 0), &mut seen);
             let mut simple = simplify(&ring);
             simple.shrink_to_fit();
@@ -42,21 +56,22 @@ pub fn find(fine: &Fine, count: usize) -> Vec<Rings> {
 }
 
 /// Which lower sides were passed: they are few against the pixels, and a ring that has one pixel's has its neighbours'.
-struct Seen {
+struct Seen<'a> {
     /// The first pixel of each stretch.
-    starts: Vec<u32>,
+    starts: &'a [u32],
     passed: Bits,
 }
 
-impl Seen {
-    fn new(fine: &Fine) -> Self {
-        let mut count = 0;
-        fine.numbers.lower_sides(|_, _| count += 1);
-        let mut starts = Vec::with_capacity(count);
-        fine.numbers.lower_sides(|_, pixels| starts.push(pixels.start as u32));
-        Self { passed: Bits::new(count), starts }
-    }
+/// The first pixel of each stretch of lower sides.
+fn starts(fine: &Fine) -> Vec<u32> {
+    let mut count = 0;
+    fine.numbers.lower_sides(|_, _| count += 1);
+    let mut starts = Vec::with_capacity(count);
+    fine.numbers.lower_sides(|_, pixels| starts.push(pixels.start as u32));
+    starts
+}
 
+impl Seen<'_> {
     fn stretch(&self, first: usize) -> usize {
         self.starts.partition_point(|&start| (start as usize) < first)
     }
@@ -110,6 +125,8 @@ impl Tracer<'_> {
         let mut before = NOWHERE;
         // Of sides in a straight row the first and the last are enough: none between is ever the farthest, or the least.
         let mut sides = 0;
+        let number = |pixel: usize| self.fine.numbers.at(pixel);
+        let mut o = number(self.beside(start.0, start.1));
         loop {
             if at.1 == 0 && before != 0 {
                 seen.pass(at.0);
@@ -128,24 +145,24 @@ impl Tracer<'_> {
             // The pixels ahead: on the region's side, and on the other.
             let turn = (side + 1) % 4;
             let left = self.beside(pixel, turn);
-            let out = self.beside(pixel, side);
-            let right = self.beside(out, turn);
-            let [l, o, r] = [left, out, right].map(|p| self.fine.numbers.at(p));
+            let right = self.beside(self.beside(pixel, side), turn);
+            let [l, r] = [left, right].map(number);
             let here = self.region;
             let (straight, turn_left, turn_right) = ((left, side), (pixel, turn), (right, (side + 3) % 4));
-            let (next, is_node) = match (l == here, r == here) {
-                (true, true) => (turn_right, false),
-                (true, false) => (straight, o != r),
+            // The next side, whether three regions meet on the way to it, and what lies beyond it.
+            let (next, is_node, beyond) = match (l == here, r == here) {
+                (true, false) => (straight, o != r, r),
                 // Where two labels touch corner to corner the lesser is joined and the greater parted; where one label
                 // touches itself between two others it is joined. So no ring comes to one point twice.
-                (false, true) => (if o == l && here > o { turn_left } else { turn_right }, false),
-                (false, false) => (turn_left, o != l),
+                (false, true) if o == l && here > o => (turn_left, false, l),
+                (_, true) => (turn_right, false, o),
+                (false, false) => (turn_left, o != l, l),
             };
             if is_node {
                 ring.push((end, true));
                 sides = 0;
             }
-            at = next;
+            (at, o) = (next, beyond);
             if at == start {
                 return ring;
             }
