@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from _other_plan import Box, Crossing, Face, Measures, Plan, Point, measures, plan
+from _other_plan import Box, Crossing, Face, Measures, Plan, Point, measures, plan, wide
 
 import groundplan
 from groundplan.maps import FREE, Map
@@ -63,10 +63,10 @@ class _Frame:
         return row, column, (column >= 0) & (row >= 0) & (column < self.shape[1]) & (row < self.shape[0])
 
 
-def site(seed: int) -> Site:
-    """The site of a seed, its map and its truth."""
+def site(seed: int, is_wide: bool = False) -> Site:
+    """The site of a seed, its map and its truth; its measures from the usual or the wide ranges."""
     draw, goods = random.Random(seed), np.random.default_rng(seed)
-    measured = measures(draw)
+    measured = wide(draw) if is_wide else measures(draw)
     laid_out = plan(measured, draw, goods)
     frame = _frame(measured, laid_out)
     if measured.look == "drawn":

@@ -106,6 +106,38 @@ def measures(draw: random.Random) -> Measures:
     )
 
 
+#: A wide site is no larger, square metres, and no longer, metres.
+_LARGEST, _LONGEST = 2600, 90
+
+
+def wide(draw: random.Random) -> Measures:
+    """Draw measures from wider ranges: two to twenty rows, narrow and wide ways, thin racks, maps from 2 cm on."""
+    while True:
+        site = Measures(
+            aisle=draw.uniform(1.2, 6.0),
+            cross=draw.uniform(1.6, 6.5),
+            depth=draw.uniform(0.4, 1.6),
+            bay=draw.uniform(1.0, 4.0),
+            rows=draw.choice([2, 3, 4, 6, 9, 13, 20]),
+            blocks=draw.randint(1, 5),
+            bays=draw.choice([2, 3, 5, 8, 14]),
+            style=draw.choice(["solid", "hollow", "legs", "shelves"]),
+            fill=draw.choice([1, 0.9, 0.8, 0.6]),
+            ends=draw.choice(["both", "both", "west", "none"]),
+            walls=draw.choice(["rack", "aisle"]),
+            yaw=draw.uniform(-np.pi / 2, np.pi / 2),
+            resolution=draw.choice([0.02, 0.04, 0.05, 0.08, 0.1]),
+            look=draw.choice(["trinary", "grey", "drawn"]),
+            range=draw.choice([6, 12, 30]),
+            noise=draw.choice([0.005, 0.03, 0.05]),
+            clutter=draw.choice([0, 5, 20, 60]),
+            wall=draw.uniform(0.05, 0.4),
+        )
+        length, depth = (site.bay * site.bays + site.cross) * site.blocks, (site.aisle + 2 * site.depth) * site.rows
+        if length * depth <= _LARGEST and max(length, depth) <= _LONGEST:
+            return site
+
+
 def plan(site: Measures, draw: random.Random, goods: np.random.Generator) -> Plan:
     """Lay a site out: `draw` has the clutter in its aisles, `goods` what stands in its racks."""
     aisles, spans, depth = _rows(site)

@@ -1,11 +1,11 @@
-"""Warehouses of another make than `groundplan.simulate`: bench/other_sites.py [FIRST [COUNT]].
+"""Warehouses of another make than `groundplan.simulate`: bench/other_sites.py [FIRST [COUNT [wide]]].
 
 What is tuned on simulated sites may fit the simulator. These are made by other rules (`_other_plan.py`,
 `_other_map.py`): racks solid, hollow, of legs with pallets between or of shelves, full or half empty, without guards at
 their ends; a wall beside the last cross aisle or the last block; maps drawn, scanned to three values or to greys, at 3
 to 10 cm. Every measure comes from the site's seed. COUNT sites (110) are made from the seeds FIRST (0) on, surveyed
-with default parameters and scored; the table has them by kind, and then those that score least. No bar, so no exit
-code.
+with default parameters and scored; the table has them by kind, and then those that score least. With ``wide`` every
+measure comes from a wider range. No bar, so no exit code.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import statistics
 import sys
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from multiprocessing import get_context
 from typing import Any
 
@@ -38,9 +39,9 @@ LOW = 0.9
 Row = tuple[int, Measures, list[float]]
 
 
-def scored(seed: int) -> Row:
+def scored(seed: int, is_wide: bool = False) -> Row:
     """The figures of one site."""
-    made = site(seed)
+    made = site(seed, is_wide)
     found = score(groundplan.survey(made.map, threads=1).to_dict(), made.truth)
     return seed, made.measures, [float(found[name]) for name in FIGURES]
 
@@ -57,8 +58,9 @@ def line(name: str, rows: list[Row]) -> str:
 def main() -> None:
     """Make the sites, score them, print the table."""
     first, count = (int(sys.argv[n]) if len(sys.argv) > n else default for n, default in ((1, 0), (2, 110)))
+    is_wide = sys.argv[3:] == ["wide"]
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
-        rows = list(pool.map(scored, range(first, first + count)))
+        rows = list(pool.map(partial(scored, is_wide=is_wide), range(first, first + count)))
     print(f"{'sites':22}{'count':>6}{'lines':>8}{'F1':>8}{'typed':>8}{'worst':>8}{'recall':>8}{'precision':>11}")
     for name, kind in KINDS.items():
         for value in sorted({kind(row[1]) for row in rows}, key=str):

@@ -76,6 +76,27 @@ def test_a_turned_map_has_the_turned_directions(name: str, turn: int) -> None:
     assert (gaps < np.radians(0.15)).sum() == len(original), np.degrees(gaps)
 
 
+@pytest.mark.parametrize("degrees", [5.5, 6.0, 6.5, 45.0, 83.5])
+@pytest.mark.parametrize(("rows", "blocks"), [(13, 5), (6, 3)])
+def test_narrow_rows_on_a_coarse_map_are_measured_where_staircases_look_like_other_directions(
+    rows: int, blocks: int, degrees: float
+) -> None:
+    """Racks of 10.8 m by 1.3 m, 1.3 m apart, with ways of 4.5 m between the blocks, at 0.1 m a pixel."""
+    angle = np.radians(degrees)
+    length, depth = blocks * 15.3 + 4.5, rows * 2.6 + 1.3
+    half = 0.6 * np.hypot(length, depth)
+    y, x = np.mgrid[-half:half:0.1, -half:half:0.1]
+    along = x * np.cos(angle) + y * np.sin(angle) + length / 2
+    across = y * np.cos(angle) - x * np.sin(angle) + depth / 2
+    inside = (along > 0) & (along < length) & (across > 0) & (across < depth)
+    racks = inside & (along % 15.3 > 4.5) & (across % 2.6 > 1.3)
+    walls = (along > -0.2) & (along < length + 0.2) & (across > -0.2) & (across < depth + 0.2) & ~inside
+    picture = np.where(racks | walls, 0, np.where(inside, 254, 205)).astype(np.uint8)
+    found = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=0.1).directions.angles
+    assert len(found) == 2
+    assert (apart([angle, angle + np.pi / 2], found).min(axis=1) < np.radians(0.1)).all(), np.degrees(found)
+
+
 def test_angles_lie_between_minus_and_plus_a_right_angle() -> None:
     for name in ZOO:
         angles = zoo.surveyed(name).directions.angles

@@ -50,3 +50,11 @@ def test_ways_at_a_hall_s_ends_are_known_by_the_aisles_that_open_into_them(racks
     assert sorted(ways) == pytest.approx([4.1] * (racks + 1) + [4.8] * 2, abs=0.15)
     found = Counter(junction["type"] for junction in survey.of_kind("junction"))
     assert found == {"L": 4, "T": 2 * (racks - 1)}
+
+
+@pytest.mark.parametrize("short", [None, 1])
+def test_a_shelf_that_is_empty_at_the_wall_is_no_way_where_the_rows_beside_it_go_on_to_it(short: int | None) -> None:
+    ends = [20.5 if row == short else 23.8 for row in range(3)]
+    survey = hall(23.8, 15.8, *((3.6, 2.0 + 4.6 * row, end, 4.6 + 4.6 * row) for row, end in enumerate(ends)))
+    across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
+    assert across == pytest.approx([3.6], abs=0.15)

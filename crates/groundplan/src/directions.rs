@@ -40,6 +40,8 @@ const OTHERS_AMONG_CONTROLS: usize = 4;
 const SECOND: f64 = 0.04;
 /// And one that is square to the first, to so many degrees, this share.
 const SQUARE: (f64, f64) = (0.3, 0.015);
+/// Beside a direction there may be another that has more, unless so much of what lies along it lined up.
+const LINED_UP: f64 = 0.5;
 /// Directions that are given closer than this are one, radians.
 const CLOSEST: f64 = 1e-6;
 /// While a candidate's angle is known to so many degrees, it may have this share of what will be found.
@@ -148,10 +150,14 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
         };
         tried.push(start);
         let [useful, perhaps] = [&found[..], &[]].map(|found| least(found, strongest, parameters) * strongest);
-        if most(frame, rest, start, ALIGNED_DEG + SCAN_DEG) < useful {
+        let most = most(frame, rest, start, ALIGNED_DEG + SCAN_DEG);
+        if most < useful {
             continue;
         }
-        let far = |angle: f64, by: f64| found.iter().all(|other| angle_between(other.angle, angle) >= by);
+        // Else the staircase of walls beside it may have led there.
+        let is_found = |other: &Candidate| other.metres >= LINED_UP * most;
+        let is_far = |other: &Candidate, angle: f64, by: f64| angle_between(other.angle, angle) >= by;
+        let far = |angle: f64, by: f64| found.iter().all(|other| is_far(other, angle, by) || !is_found(other));
         let worth = |angle: f64| {
             let metres = || aligned(frame, rest, angle, threads).metres;
             far(angle, separation - HALF_KNOWN_DEG.to_radians()) && (perhaps == 0.0 || metres() >= HALF_KNOWN * perhaps)
@@ -164,9 +170,13 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
         if far(angle, separation) {
             let lines = aligned(frame, rest, angle, threads);
             let metres = lines.metres;
+            if found.iter().any(|other| !is_far(other, angle, separation) && other.metres >= metres) {
+                continue;
+            }
             let quiet = if metres >= useful { quiet(frame, rest, angle, metres, threads) } else { 0 };
             strongest = strongest.max(metres);
             take(rest, angle, &lines, parameters);
+            found.retain(|other| is_far(other, angle, separation));
             found.push(Candidate { angle, metres, quiet });
             candidates = self::candidates(rest.histogram());
         }

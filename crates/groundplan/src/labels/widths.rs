@@ -13,6 +13,11 @@ const REST: f64 = 6.0;
 /// A bay that is so much wider or narrower than a way, as a share of it, can be told from one.
 const APART: f64 = 0.1;
 
+/// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
+const WALL: f64 = 0.9;
+const TAKEN: f64 = 0.5;
+const BEYOND: f64 = 0.4;
+
 /// How wide the ways of a direction are that are no bays, metres.
 #[derive(Default)]
 pub struct Widths(Vec<f64>);
@@ -64,11 +69,23 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
         let known = Widths((0..strips.len()).filter(whole).map(|n| strips[n].width()).collect());
         for (n, crossed) in through.iter().enumerate() {
             let is_some = crossed.rows > 0 && crossed.goes_on && crossed.rest <= REST && !known.is_empty();
-            stays[n] &= !is_some || known.have(strips[n].width(), view.pitch);
+            // Where the rows beside it go on to the wall, one that does not is empty there.
+            let is_bay = || crossed.rows == 1 && !crossed.is_led_on && is_at_wall(other, &strips[n]);
+            stays[n] &= !is_some || (known.have(strips[n].width(), view.pitch) && !is_bay());
         }
     }
     let mut flags = stays.into_iter();
     strips.into_iter().filter(|_| flags.next().unwrap_or(true)).collect()
+}
+
+/// True when a wall runs all along one side of a strip.
+fn is_at_wall(view: &Turned, strip: &Strip) -> bool {
+    let columns = view.column(strip.along[0])..view.column(strip.along[1]) + 1;
+    strip.across.into_iter().zip([-BEYOND, BEYOND]).any(|(side, beyond)| {
+        let ends = [side.min(side + beyond), side.max(side + beyond)];
+        let taken = view.some_blocked(columns.clone(), ends[0], ends[1]);
+        taken.iter().filter(|share| **share >= TAKEN).count() as f64 >= WALL * taken.len() as f64
+    })
 }
 
 /// The aisles along a direction, and the rows between them, each with the two beside it.
@@ -96,6 +113,8 @@ struct Crossed {
     rest: f64,
     /// It ends between two of them.
     goes_on: bool,
+    /// Another leads on through the next one, in line.
+    is_led_on: bool,
 }
 
 impl Crossed {
@@ -124,22 +143,30 @@ impl Crossed {
         // The rows above and below each aisle.
         let mut beside: Vec<[Vec<usize>; 2]> = vec![Default::default(); aisles.len()];
         let mut crossed: Vec<Vec<usize>> = vec![Vec::new(); strips.len()];
+        // And what leads through each row.
+        let mut through: Vec<Vec<usize>> = vec![Vec::new(); rows.len()];
         for (m, (row, between)) in rows.iter().enumerate() {
             beside[between[0]][0].push(m);
             beside[between[1]][1].push(m);
             for n in leading_across([view, other], placed, row, widest) {
                 if place(n, row, *between).is_some_and(|s| crosses(n, s)) {
                     crossed[n].push(m);
+                    through[m].push(n);
                 }
             }
         }
         let of_strip = |(n, own): (usize, &Vec<usize>)| {
             let middle = |n: usize| strips[aisles[n]].middle();
-            let through = |&m: &usize| middle(rows[m].1[1]) - middle(rows[m].1[0]);
-            let rest = own.iter().map(through).fold(strips[n].length(), |rest, through| rest - through);
-            let mut next = own.iter().flat_map(|&m| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]));
-            let goes_on = next.any(|&m| place(n, &rows[m].0, rows[m].1).is_some_and(|s| !crosses(n, s)));
-            Self { rows: own.len(), rest, goes_on }
+            let led = |&m: &usize| middle(rows[m].1[1]) - middle(rows[m].1[0]);
+            let rest = own.iter().map(led).fold(strips[n].length(), |rest, led| rest - led);
+            let next = || own.iter().flat_map(|&m| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]));
+            let goes_on = next().any(|&m| place(n, &rows[m].0, rows[m].1).is_some_and(|s| !crosses(n, s)));
+            let is_in_line = |&other: &usize| {
+                let [one, two] = [n, other].map(|n| strips[n].across);
+                other != n && one[0].max(two[0]) < one[1].min(two[1])
+            };
+            let is_led_on = next().any(|&m| through[m].iter().any(is_in_line));
+            Self { rows: own.len(), rest, goes_on, is_led_on }
         };
         crossed.iter().enumerate().map(of_strip).collect()
     }
