@@ -37,6 +37,7 @@ mod rooms;
 mod runs;
 mod sections;
 mod shares;
+mod sided;
 mod sketch;
 mod squares;
 mod strips;

@@ -60,7 +60,7 @@ const SEEN_OUTSIDE: f64 = 0.5;
 /// The corridors along a rack are so many times as long as a gap in it.
 const LONGER: f64 = 1.5;
 /// A place has racks when it has so many, and so many metres of them for a metre of corridor.
-const PLACE: (usize, f64) = (3, 0.22);
+const PLACE: (usize, f64) = (3, 0.25);
 /// Sides nearer than this are the same, metres.
 pub const SAME: f64 = 0.3;
 

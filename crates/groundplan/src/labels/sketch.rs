@@ -11,6 +11,7 @@ use super::look::Look;
 use super::narrowed;
 use super::racks::{self, Row};
 use super::rooms::{Bar, Space};
+use super::sided;
 use super::turned::Turned;
 use super::whole;
 use super::widths;
@@ -24,7 +25,8 @@ const ALONE: (f64, f64) = (2.0, 5.0);
 const RECURS: f64 = 3.5;
 const OTHERS: usize = 2;
 const ALIKE: f64 = 0.2;
-/// And one that is shut at both its ends, be it with a door, so many times: less is a room.
+/// And one that is shut at both its ends, be it with a door, so many times, between sides if it is no such one: else it
+/// is a room, or what furniture leaves of one.
 const SHUT: f64 = 4.5;
 /// A corridor that meets one other goes on beyond it, on one side for so many times its width and so far, metres, or on
 /// both together for as many times and so far: or it is a niche at the other's side.
@@ -188,7 +190,11 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<S
             let is_aisle = || is_one_of(ALONE.0, (0.0, racks::DEPTH.1)) || is_one_of(NICHE.0, racks::DEPTH);
             match met[n].len() {
                 0 | 1 if racks::is_within_row(&strips, &placed, n) => false,
-                0 if is_shut(n) => strips[n].length() >= SHUT * strips[n].width(),
+                0 if is_shut(n) => {
+                    let is_one_of_many = || recurs(&strips, &placed, n, (0.0, racks::DEPTH.1));
+                    let is_sided = || sided::is_sided(&views[strips[n].direction], &strips[n]);
+                    strips[n].length() >= SHUT * strips[n].width() && (is_one_of_many() || is_sided())
+                }
                 0 if strips[n].length() >= ALONE.1.max(ALONE.0 * strips[n].width()) => true,
                 0 => is_aisle(),
                 1 => !met[n].iter().any(is_niche) || is_aisle(),
