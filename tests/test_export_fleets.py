@@ -23,7 +23,7 @@ import groundplan
 from groundplan import FormatError, GroundplanError, ParameterError
 from groundplan.roadmap import road_map
 
-ONE_WAY: list[dict[str, Any]] = [{"name": "A02", "way": "forward", "speed": 0.8}, {"name": "A03", "way": "backward"}]
+ONE_WAY: list[dict[str, Any]] = [{"name": "A03", "way": "forward", "speed": 0.8}, {"name": "A04", "way": "backward"}]
 
 
 @cache
@@ -220,8 +220,8 @@ def test_zones_are_valid_and_keep_vehicles_out_of_racks_and_corridors_one_way(tm
         zone = zones[f"{corridor['name']}-way"]
         along = math.cos(zone["direction"] - math.atan2(y1 - y0, x1 - x0))
         assert abs(along) == pytest.approx(1.0, abs=1e-3)
-        assert zone["zoneType"] == ("DIRECTED" if corridor["name"] in ("A02", "A03") else "BIDIRECTED")
-    assert math.cos(zones["A02-way"]["direction"] - zones["A03-way"]["direction"]) == pytest.approx(-1.0, abs=1e-3)
+        assert zone["zoneType"] == ("DIRECTED" if corridor["name"] in ("A03", "A04") else "BIDIRECTED")
+    assert math.cos(zones["A03-way"]["direction"] - zones["A04-way"]["direction"]) == pytest.approx(-1.0, abs=1e-3)
 
 
 def shape(zone: dict[str, Any]) -> Any:

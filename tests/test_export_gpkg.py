@@ -79,7 +79,7 @@ def test_layers_come_back_with_their_shapes_to_a_millimetre(which: str, tmp_path
 
 
 def test_the_road_map_comes_back_with_its_nodes_and_free_widths(tmp_path: Path) -> None:
-    survey, rules = demo(), [{"name": "A02", "way": "forward", "speed": 0.8}]
+    survey, rules = demo(), [{"name": "A03", "way": "forward", "speed": 0.8}]
     read = tables(once(survey, "gpkg", tmp_path, rules=rules, spurs=0.6))
     roads = road_map(survey, rules=rules, spurs=0.6)
     at = {values["id"]: shape for shape, values in read["road_nodes"]}

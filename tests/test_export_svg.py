@@ -180,4 +180,4 @@ def test_the_legend_counts_what_there_is(tmp_path: Path) -> None:
     words = [text.text for text in layer(root, "legend-text")]
     assert {"Corridor (7)", "Rack (7)", "warehouse.pgm"} <= set(words)
     named = {text.text for text in layer(root, "name")}
-    assert {"A01", "A02", "C03", "S2-03"} <= named
+    assert {"A01", "A03", "C06", "S2-03"} <= named

@@ -207,7 +207,7 @@ parameters! {
     labels_min_aspect: f64 = 1.5, "labels.min_aspect", "", Range::Number(0.0, 100.0), false, "II-E",
         "A corridor is at least this many times as long as it is wide.";
     labels_square: f64 = 4.0, "labels.square", "m", Range::Number(0.5, 100.0), false, "II-E",
-        "Regions, racks and pillars are named by the squares of a grid along the dominant direction; the side of one.";
+        "Corridors, regions, racks and pillars are named by the squares of a grid along the dominant direction; the side of one.";
     pillars_min_width: f64 = 0.2, "pillars.min_width", "m", Range::Number(0.0, 10.0), false, "II-E",
         "A pillar is at least this wide.";
     pillars_max_width: f64 = 1.2, "pillars.max_width", "m", Range::Number(0.0, 10.0), false, "II-E",

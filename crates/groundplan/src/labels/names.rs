@@ -1,57 +1,38 @@
-//! Names that a person can use and that hold when the map is made again: numbers run along the dominant directions,
-//! from the lower left, and do not depend on which direction happened to be the stronger.
+//! Names of corridors by place, as of everything else (`places.rs`): the letter of the direction and the row or column
+//! of the site's squares in which the corridor runs. What appears or goes renames nothing else, as a count would.
 
+use super::places::{Squares, suffix};
 use super::turned::Turned;
 
-/// Rows whose middles are this near to one line across are numbered as one, metres.
-const SAME_ROW: f64 = 1.0;
-/// The way in which numbers run across a direction turns over where its normal is perpendicular to this: an angle at
-/// which nobody builds, so that a map made again numbers the same way.
-const FORWARDS: [f64; 2] = [0.927, 0.375];
-
-/// Something to be named, in the places of its direction.
+/// A corridor to be named.
 pub struct Named {
     /// Index of the direction.
     pub direction: usize,
-    /// Its middle across.
-    pub across: f64,
-    /// Its middle along.
-    pub along: f64,
-    /// How much it says for its direction being the main one, metres.
-    pub weight: f64,
+    /// Its middle in the map frame, metres.
+    pub middle: [f64; 2],
+    /// How long it is, metres: as much it says for its direction being the main one.
+    pub length: f64,
 }
 
-/// A name for each: the letter of the main direction or of the others, and a number.
-pub fn names(views: &[Turned], items: &[Named], main: &str, other: &str) -> Vec<String> {
-    let weight = |d: usize| items.iter().filter(|i| i.direction == d).map(|i| i.weight).sum::<f64>();
-    let first = (0..views.len()).max_by(|&a, &b| weight(a).total_cmp(&weight(b)).then(b.cmp(&a))).unwrap_or(0);
-    let sign = |x: f64, y: f64| if x * FORWARDS[0] + y * FORWARDS[1] < 0.0 { -1.0 } else { 1.0 };
-    let key = |item: &Named| {
-        let angle = views[item.direction].angle;
-        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-        (item.across * sign(-sin, cos), item.along * sign(cos, sin))
-    };
+/// A name for each: `A` of the main direction, `C` of the others, and the row. Of several in one row the longest has the
+/// plain name, and of those about as long (within the square root of two) the first along the row.
+pub fn names(views: &[Turned], squares: &Squares, items: &[Named]) -> Vec<String> {
+    let weight = |d: usize| items.iter().filter(|i| i.direction == d).map(|i| i.length).sum::<f64>();
+    let main = (0..views.len()).max_by(|&a, &b| weight(a).total_cmp(&weight(b)).then(b.cmp(&a))).unwrap_or(0);
+    let row = |item: &Named| squares.row(views[item.direction].angle, item.middle);
+    let keys: Vec<(bool, usize)> = items.iter().map(|item| (item.direction != main, row(item))).collect();
+    let ahead = |item: &Named| squares.ahead(item.middle);
+    let about = |item: &Named| (2.0 * libm::log2(item.length)).floor();
+    let mut order: Vec<usize> = (0..items.len()).collect();
+    order.sort_by(|&a, &b| {
+        let longer = about(&items[b]).total_cmp(&about(&items[a]));
+        keys[a].cmp(&keys[b]).then(longer).then_with(|| ahead(&items[a]).total_cmp(&ahead(&items[b])))
+    });
     let mut names = vec![String::new(); items.len()];
-    for is_main in [true, false] {
-        let mut order: Vec<usize> = (0..items.len()).filter(|&n| (items[n].direction == first) == is_main).collect();
-        order.sort_by(|&a, &b| {
-            let angle = |n: usize| views[items[n].direction].angle;
-            angle(a).total_cmp(&angle(b)).then(key(&items[a]).0.total_cmp(&key(&items[b]).0))
-        });
-        // Along one line across, by the place along.
-        let mut start = 0;
-        while start < order.len() {
-            let same = |n: usize| {
-                items[n].direction == items[order[start]].direction
-                    && key(&items[n]).0 - key(&items[order[start]]).0 < SAME_ROW
-            };
-            let end = (start..order.len()).find(|&n| !same(order[n])).unwrap_or(order.len());
-            order[start..end].sort_by(|&a, &b| key(&items[a]).1.total_cmp(&key(&items[b]).1));
-            start = end;
-        }
-        let letter = if is_main { main } else { other };
-        for (n, &item) in order.iter().enumerate() {
-            names[item] = format!("{letter}{:02}", n + 1);
+    for group in order.chunk_by(|&a, &b| keys[a] == keys[b]) {
+        for (n, &item) in group.iter().enumerate() {
+            let (is_other, row) = keys[item];
+            names[item] = format!("{}{:02}{}", if is_other { "C" } else { "A" }, row + 1, suffix(n));
         }
     }
     names

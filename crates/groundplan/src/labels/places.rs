@@ -13,10 +13,21 @@ const BEFORE: f64 = 0.01;
 /// Every so many columns and rows of the turned map are looked at.
 const STRIDE: usize = 3;
 
-/// The squares.
+/// What is named is this many times as large as the squares that it is named by, or larger.
+const SMALL: f64 = 2.0;
+
+/// Something to be named: its middle in the squares' frame, how much it weighs against others in its square, and how
+/// large it is, metres; of what is small, 0.
+pub struct Placed {
+    pub place: [f64; 2],
+    pub weight: f64,
+    pub size: f64,
+}
+
+/// The squares, between the corners of the site in their own frame.
 pub struct Squares {
     heading: [f64; 2],
-    corner: [f64; 2],
+    corners: [[f64; 2]; 2],
     side: f64,
 }
 
@@ -26,18 +37,18 @@ impl Squares {
         let side = evidence.parameters.labels_square;
         let Some(view) = view else {
             let corner = evidence.grid.frame.to_metres([0.0, 0.0]);
-            return Self { heading: [1.0, 0.0], corner, side };
+            return Self { heading: [1.0, 0.0], corners: [corner; 2], side };
         };
         let quarters = (0..4).map(|n| view.angle + f64::from(n) * FRAC_PI_2);
         let headings = quarters.map(|angle| [libm::cos(angle), libm::sin(angle)]);
         let nearer = |h: &[f64; 2]| h[0] * FORWARDS[0] + h[1] * FORWARDS[1];
         let heading = headings.max_by(|a, b| nearer(a).total_cmp(&nearer(b))).unwrap_or([1.0, 0.0]);
-        let mut made = Self { heading, corner: [0.0; 2], side };
+        let mut made = Self { heading, corners: [[0.0; 2]; 2], side };
         // Of the view's own axes, each is one of the squares', be it backwards.
         let along = extent(&free_columns(view), view.start[0], view.cell);
         let across = extent(&free_rows(view), view.start[1], view.cell);
         let corners = [0, 1].map(|n| made.place(view.to_map([along[n], across[n]])));
-        made.corner = [0, 1].map(|axis| corners[0][axis].min(corners[1][axis]));
+        made.corners = [f64::min, f64::max].map(|end| [0, 1].map(|axis| end(corners[0][axis], corners[1][axis])));
         made
     }
 
@@ -47,19 +58,51 @@ impl Squares {
         [x * c + y * s, y * c - x * s]
     }
 
+    /// How far on a place is, whichever way a row through it runs.
+    pub fn ahead(&self, place: [f64; 2]) -> f64 {
+        let [u, v] = self.place(place);
+        u * FORWARDS[0] + v * FORWARDS[1]
+    }
+
+    /// In which of the rows along an angle, as wide as a square and counted from the site's edge on, a place lies.
+    pub fn row(&self, angle: f64, place: [f64; 2]) -> usize {
+        let normal = [-libm::sin(angle), libm::cos(angle)];
+        let across = if self.ahead(normal) < 0.0 { normal.map(|part| -part) } else { normal };
+        let [across, place] = [across, place].map(|vector| self.place(vector));
+        let edge = |axis: usize| self.corners.iter().map(|c| c[axis] * across[axis]).fold(f64::MAX, f64::min);
+        self.count(place[0] * across[0] + place[1] * across[1] - edge(0) - edge(1))
+    }
+
+    /// So many squares a side are taken together for what is so large, metres: its middle is then the less often so near
+    /// to a side that a map made again has it in another.
+    fn together(&self, size: f64) -> usize {
+        let mut together = 1;
+        while SMALL * 2.0 * self.side * together as f64 <= size {
+            together *= 2;
+        }
+        together
+    }
+
+    /// So many sides of a square go whole into metres.
+    fn count(&self, metres: f64) -> usize {
+        (metres / self.side).floor().max(0.0) as usize
+    }
+
     /// A name for each place: the letter, the row from below and the square in it from the left. Of several in one
     /// square the one that weighs most has the plain name.
-    pub fn names(&self, letter: &str, items: &[([f64; 2], f64)]) -> Vec<String> {
-        let square = |place: [f64; 2]| {
-            let [u, v] = [0, 1].map(|axis| ((place[axis] - self.corner[axis]) / self.side).floor().max(0.0) as usize);
+    pub fn names(&self, letter: &str, items: &[Placed]) -> Vec<String> {
+        let square = |item: &Placed| {
+            let together = self.together(item.size);
+            let [u, v] = [0, 1].map(|axis| self.count(item.place[axis] - self.corners[0][axis]) / together * together);
             [v, u]
         };
+        let squares: Vec<_> = items.iter().map(square).collect();
         let mut order: Vec<usize> = (0..items.len()).collect();
-        order.sort_by(|&a, &b| square(items[a].0).cmp(&square(items[b].0)).then(items[b].1.total_cmp(&items[a].1)));
+        order.sort_by(|&a, &b| squares[a].cmp(&squares[b]).then(items[b].weight.total_cmp(&items[a].weight)));
         let mut names = vec![String::new(); items.len()];
-        for group in order.chunk_by(|&a, &b| square(items[a].0) == square(items[b].0)) {
+        for group in order.chunk_by(|&a, &b| squares[a] == squares[b]) {
             for (n, &item) in group.iter().enumerate() {
-                let [row, column] = square(items[item].0);
+                let [row, column] = squares[item];
                 names[item] = format!("{letter}{}-{:02}{}", row + 1, column + 1, suffix(n));
             }
         }
@@ -68,7 +111,7 @@ impl Squares {
 }
 
 /// Nothing for the first, then b to z, then numbers.
-fn suffix(n: usize) -> String {
+pub fn suffix(n: usize) -> String {
     match n {
         0 => String::new(),
         1..=25 => char::from(b'a' + n as u8).to_string(),

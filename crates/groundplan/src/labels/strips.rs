@@ -7,7 +7,7 @@ use super::names::{Named, names};
 use super::near::Near;
 use super::period::Period;
 use super::pillars;
-use super::places::Squares;
+use super::places::{Placed, Squares};
 use super::racks::Row;
 use super::rooms::{self, Racked, Raster};
 use super::sketch::{Plan, Sketch};
@@ -47,11 +47,11 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
         .collect();
     let named = strips.iter().zip(&extents).map(|(strip, along)| Named {
         direction: strip.direction,
-        across: strip.middle(),
-        along: f64::midpoint(along[0], along[1]),
-        weight: along[1] - along[0],
+        middle: views[strip.direction].to_map([f64::midpoint(along[0], along[1]), strip.middle()]),
+        length: along[1] - along[0],
     });
-    let names = names(&views, &named.collect::<Vec<_>>(), "A", "C");
+    let squares = squares(evidence, &views, &strips);
+    let names = names(&views, &squares, &named.collect::<Vec<_>>());
     let mut faces = Faces::new(division, |state| state == State::Free);
     let mut labels: Vec<Label> = strips
         .iter()
@@ -66,7 +66,6 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
         .collect();
     let racked = racked(&views, &strips, &extents, &meetings, [&rows, &between]);
     labels.extend(junctions);
-    let squares = squares(evidence, &views, &strips);
     // Of the views their places are asked from here on, and the regions need the room.
     views.iter_mut().for_each(Turned::let_go);
     let Some((space, bars)) = free else {
@@ -136,7 +135,10 @@ fn squares(evidence: &Evidence, views: &[Turned], strips: &[Strip]) -> Squares {
 
 fn pillar_labels(evidence: &Evidence, raster: &Raster, grounds: &[Vec<[f64; 2]>], squares: &Squares) -> Vec<Label> {
     let pillars = pillars::find(evidence, raster, grounds);
-    let items: Vec<_> = pillars.iter().map(|pillar| (squares.place(pillar.at), pillar.width)).collect();
+    let items: Vec<_> = pillars
+        .iter()
+        .map(|pillar| Placed { place: squares.place(pillar.at), weight: pillar.width, size: 0.0 })
+        .collect();
     let names = squares.names("P", &items);
     let label = |(pillar, name): (&pillars::Pillar, String)| Label::Pillar {
         at: pillar.at.map(tidy),
@@ -159,7 +161,8 @@ fn rack_labels(
         let place = [row.along, row.across].map(|ends| f64::midpoint(ends[0], ends[1]));
         squares.place(views[row.direction].to_map(place))
     };
-    let items: Vec<_> = rows.iter().map(|row| (middle(row), row.along[1] - row.along[0])).collect();
+    let placed = |row: &Row| Placed { place: middle(row), weight: row.length(), size: 0.0 };
+    let items: Vec<_> = rows.iter().map(placed).collect();
     let names = squares.names("S", &items);
     let periods = bays::find(evidence, views, rows);
     rows.iter()

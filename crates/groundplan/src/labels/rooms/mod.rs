@@ -19,7 +19,7 @@ mod raster;
 mod runs;
 
 use super::near::Near;
-use super::places::Squares;
+use super::places::{Placed, Squares};
 use super::recall::Recall;
 use super::{Division, Evidence, Label, Purpose, outline};
 use crate::grid::{Grid, State, tidy};
@@ -220,7 +220,11 @@ pub fn find(
     let faces = faces(evidence, division, &fine, regions.len());
     let mut outlines = outlines::find(&fine, regions.len(), evidence.threads);
     let square = evidence.grid.frame.resolution.powi(2);
-    let places: Vec<_> = regions.iter().map(|region| (region.place, region.pixels as f64)).collect();
+    let placed = |region: &Region| {
+        let area = fine.areas[region.number as usize] as f64 * square;
+        Placed { place: region.place, weight: area, size: area.sqrt() }
+    };
+    let places: Vec<Placed> = regions.iter().map(placed).collect();
     let mut doors_of = vec![0; regions.len() + 1];
     doorways.iter().flat_map(|door| door.between).for_each(|number| doors_of[number as usize] += 1);
     let mut labels: Vec<Label> = Vec::new();
