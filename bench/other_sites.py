@@ -1,17 +1,17 @@
-"""Warehouses of another make than `groundplan.simulate`: bench/other_sites.py [FIRST [COUNT [wide]]].
+"""Warehouses of another make than `groundplan.simulate`: bench/other_sites.py [FIRST [COUNT]] [--wide].
 
 What is tuned on simulated sites may fit the simulator. These are made by other rules (`_other_plan.py`,
 `_other_map.py`): racks solid, hollow, of legs with pallets between or of shelves, full or half empty, without guards at
 their ends; a wall beside the last cross aisle or the last block; maps drawn, scanned to three values or to greys, at 3
 to 10 cm. Every measure comes from the site's seed. COUNT sites (110) are made from the seeds FIRST (0) on, surveyed
-with default parameters and scored; the table has them by kind, and then those that score least. With ``wide`` every
+with default parameters and scored; the table has them by kind, and then those that score least. With ``--wide`` every
 measure comes from a wider range. No bar, so no exit code.
 """
 
 from __future__ import annotations
 
+import argparse
 import statistics
-import sys
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
@@ -57,10 +57,14 @@ def line(name: str, rows: list[Row]) -> str:
 
 def main() -> None:
     """Make the sites, score them, print the table."""
-    first, count = (int(sys.argv[n]) if len(sys.argv) > n else default for n, default in ((1, 0), (2, 110)))
-    is_wide = sys.argv[3:] == ["wide"]
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("first", nargs="?", type=int, default=0)
+    parser.add_argument("count", nargs="?", type=int, default=110)
+    parser.add_argument("--wide", action="store_true", help="every measure from a wider range")
+    words = parser.parse_args()
+    seeds = range(words.first, words.first + words.count)
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
-        rows = list(pool.map(partial(scored, is_wide=is_wide), range(first, first + count)))
+        rows = list(pool.map(partial(scored, is_wide=words.wide), seeds))
     print(f"{'sites':22}{'count':>6}{'lines':>8}{'F1':>8}{'typed':>8}{'worst':>8}{'recall':>8}{'precision':>11}")
     for name, kind in KINDS.items():
         for value in sorted({kind(row[1]) for row in rows}, key=str):

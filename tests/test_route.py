@@ -230,6 +230,8 @@ def test_places_are_points_names_and_faces() -> None:
         ((0.6, 2.0), 0.3, "route.blocked", "0.6"),
         (LEFT, -0.1, "route.clearance", "-0.1"),
         (LEFT, math.inf, "route.clearance", "inf"),
+        (LEFT, 10**400, "route.clearance", "1000"),
+        ("a99", 0.3, "route.name", "a99"),
         (LEFT, "wide", "route.clearance", "wide"),
         (LEFT, 5.0, "route.blocked", "5 m"),
     ],

@@ -230,6 +230,7 @@ def test_a_map_of_another_size_or_meaning_is_surveyed_anew() -> None:
         (PATCH.astype(np.float64), 0, 0, "float64"),
         (PATCH[0], 0, 0, r"\(30,\)"),
         (PATCH[:0], 0, 0, r"\(0, 30\)"),
+        ([[1, 2], [3]], 0, 0, "no patch"),
         (np.full((2, 2), 42, np.int8), 0, 0, "can mean 42"),
         (tower(), 1, 2, "a whole map"),
     ],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -86,7 +87,7 @@ class Queries:
         """The faces that hold points, `NONE` outside."""
         try:
             xs, ys = np.broadcast_arrays(np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64))
-        except (TypeError, ValueError) as reason:
+        except (TypeError, ValueError, OverflowError) as reason:
             raise ParameterError("point.number", f"the points are none: {reason}", "as many numbers x as y") from None
         if not (np.isfinite(xs).all() and np.isfinite(ys).all()):
             raise ParameterError("point.finite", "a coordinate of the points is not finite")
@@ -166,7 +167,8 @@ class Queries:
     def _named(self, name: str) -> Label:
         names = {label["name"]: label for label in self.survey.labels if "name" in label and "polygon" in label}
         if name not in names:
-            near = get_close_matches(name, names, 1)
+            own = [known for known in names if known.casefold() == name.casefold()]
+            near = own or get_close_matches(name, names, 1)
             hint = f"did you mean {near[0]}?" if near else PLACE
             raise ParameterError("route.name", f"no label is named {name!r}", hint)
         return names[name]
@@ -174,7 +176,7 @@ class Queries:
     def _point(self, place: Any, ways: _core.Ways, clearance: float) -> tuple[float, float]:
         try:
             x, y = (float(value) for value in place)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise ParameterError("route.place", f"{place!r} is no place", PLACE) from None
         if not (math.isfinite(x) and math.isfinite(y)):
             raise no_point(x, y)
@@ -193,6 +195,8 @@ class Queries:
 
 
 def _is_number(value: object) -> bool:
+    if isinstance(value, int) and abs(value) > sys.float_info.max:
+        return False
     return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
 
 

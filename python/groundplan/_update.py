@@ -115,7 +115,11 @@ def fitted(map: Map, patch: Any, row: int | None, column: int | None) -> tuple[B
     ParameterError
         ``update.patch``.
     """
-    pixels = as_pixels(map, np.asarray(patch))
+    try:
+        patch = np.asarray(patch)
+    except ValueError as reason:
+        raise ParameterError("update.patch", f"that is no patch: {reason}", "its rows are all as long") from None
+    pixels = as_pixels(map, patch)
     whole = all(isinstance(n, int | np.integer) and not isinstance(n, bool) for n in (row, column))
     if row is None or column is None or not whole:
         raise ParameterError("update.patch", f"row {row!r} and column {column!r} are not two whole numbers")
@@ -123,7 +127,7 @@ def fitted(map: Map, patch: Any, row: int | None, column: int | None) -> tuple[B
     if row < 0 or column < 0 or row + rows > height or column + columns > width:
         said = f"a patch of {rows} rows and {columns} columns from row {row} and column {column} on"
         raise ParameterError("update.patch", f"{said} does not lie in a map of {height} rows and {width} columns")
-    upwards = np.asarray(patch).dtype == np.int8
+    upwards = patch.dtype == np.int8
     low, left = int(row if upwards else height - row - rows), int(column)
     return pixels, ((low, low + rows), (left, left + columns))
 

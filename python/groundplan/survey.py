@@ -177,7 +177,7 @@ class Survey(Stage):
             return self._queries.locate_all(x, y)
         try:
             face = self._queries.locator.locate(x, y)
-        except TypeError:
+        except (TypeError, OverflowError):
             raise no_point(x, y) from None
         if face is None and not (math.isfinite(x) and math.isfinite(y)):
             raise no_point(x, y)
@@ -193,7 +193,7 @@ class Survey(Stage):
         """
         try:
             is_finite = math.isfinite(x) and math.isfinite(y)
-        except TypeError:
+        except (TypeError, OverflowError):
             is_finite = False
         if not is_finite:
             raise no_point(x, y)
@@ -243,8 +243,8 @@ class Survey(Stage):
     ) -> Survey:
         """The survey of the map after a change, with the bytes that a survey of the whole map has.
 
-        Gradients are found again around the change alone. What follows is made anew, but for the corridors that may be
-        and the narrows where neither the map nor a line has changed. This survey and its map stay as they are.
+        Gradients are found again around the change alone. What follows is made anew, but for what labels are found
+        from where neither the map nor a line has changed. This survey and its map stay as they are.
 
         Parameters
         ----------
@@ -419,7 +419,11 @@ def survey(
             raise MapError("map.input", f"{shown(map)} is no map", "a Map, an array or a file's path is one")
         if resolution is None:
             raise MapError("map.resolution", "an array needs its resolution", "survey(array, resolution=0.05)")
-        map = from_array(np.asarray(map), resolution, (0.0, 0.0, 0.0) if origin is None else tuple(origin))
+        try:
+            pixels = np.asarray(map)
+        except ValueError as reason:
+            raise MapError("map.input", f"that is no map: {reason}", "its rows are all as long") from None
+        map = from_array(pixels, resolution, (0.0, 0.0, 0.0) if origin is None else tuple(origin))
     if client is not None:
         from groundplan import _cluster
 

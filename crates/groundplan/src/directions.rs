@@ -40,7 +40,8 @@ const OTHERS_AMONG_CONTROLS: usize = 4;
 const SECOND: f64 = 0.04;
 /// And one that is square to the first, to so many degrees, this share.
 const SQUARE: (f64, f64) = (0.3, 0.015);
-/// Beside a direction there may be another that has more, unless so much of what lies along it lined up.
+/// Beside a direction there may be another that has more, unless as much lined up along the one that was found as this
+/// share of what lies along the new one. What the weaker one took stays with it: hardly anything lined up there.
 const LINED_UP: f64 = 0.5;
 /// Directions that are given closer than this are one, radians.
 const CLOSEST: f64 = 1e-6;

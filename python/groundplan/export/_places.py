@@ -127,7 +127,7 @@ def spread(survey: Survey, found: Sequence[Place]) -> npt.NDArray[np.float64]:
 
 
 def forwards(x: float, y: float) -> bool:
-    """Whether numbers run that way: right, or up; the same half-turn as in the corridors' numbers."""
+    """Whether numbers run that way: right, or up."""
     return 0.927 * x + 0.375 * y >= 0
 
 

@@ -1,6 +1,6 @@
 //! How sure a label is: what the pixels around it say of the question that it answers, from 0 (nothing speaks for it)
 //! to 1 (nothing against it). Each kind has its own question; the map itself is asked, not the steps that led to the
-//! label, so that two ways to find a label are held to one measure.
+//! label, so that two ways to find a label are held to one measure. Racks bear witness for those that are as deep.
 
 use super::blocks::as_deep;
 use super::looks::{Looks, STEP, along, frame_of};
@@ -29,27 +29,36 @@ const FRONT: f64 = 0.4;
 const SOLID: f64 = 0.85;
 /// Less of a rack than this is taken where there is floor under it: then its posts are looked for.
 const HOLLOW: f64 = 0.5;
-/// So much does another rack that is as deep weigh beside what a rack looks like itself.
+/// So much does another rack that is as deep, and sure, weigh beside what a rack looks like itself.
 const WITNESS: f64 = 0.5;
 /// Floor shows round a pillar at this distance from its faces, metres.
 const ROUND: f64 = 0.3;
 
-/// How deep racks are, in order: they come in kinds, and one as deep as others is less in doubt.
-struct Kinds(Vec<f64>);
+/// How deep racks are, in order, each with how sure those before it are together: racks come in kinds, and one as deep
+/// as others is less in doubt, the less the surer they are.
+struct Kinds(Vec<(f64, f64)>);
 
 impl Kinds {
-    fn new(labels: &[Label]) -> Self {
-        let depth = |label: &Label| if let Label::Rack { width, .. } = label { Some(*width) } else { None };
-        let mut depths: Vec<f64> = labels.iter().filter_map(depth).collect();
-        depths.sort_by(f64::total_cmp);
-        Self(depths)
+    fn new(labels: &[Label], sure: &[f64]) -> Self {
+        let racks = labels.iter().zip(sure).filter_map(|(label, sure)| match label {
+            Label::Rack { width, .. } => Some((*width, *sure)),
+            _ => None,
+        });
+        let mut racks: Vec<_> = racks.collect();
+        racks.sort_by(|one, two| one.0.total_cmp(&two.0));
+        racks.push((f64::INFINITY, 0.0));
+        let mut before = 0.0;
+        for (_, sure) in &mut racks {
+            before += std::mem::replace(sure, before);
+        }
+        Self(racks)
     }
 
-    /// So many others are as deep as a rack.
-    fn others(&self, depth: f64) -> usize {
+    /// How sure a rack is beside all that are as deep.
+    fn witnessed(&self, depth: f64, own: f64) -> f64 {
         let off = as_deep(depth);
-        let [from, to] = [depth - off, depth + off].map(|end| self.0.partition_point(|other| *other < end));
-        (to - from).saturating_sub(1)
+        let [from, to] = [depth - off, depth + off].map(|end| self.0[self.0.partition_point(|rack| rack.0 < end)].1);
+        1.0 - (1.0 - own) / (1.0 + WITNESS * (to - from - own).max(0.0))
     }
 }
 
@@ -73,14 +82,15 @@ pub fn find_confidence(evidence: &Evidence, labels: &[Label]) -> Vec<f64> {
         };
         recall.sure.or_look(patches, || key(labels, label), look)
     };
-    let kinds = Kinds::new(labels);
-    let witnessed = |label: &Label| match label {
-        Label::Rack { width, .. } => 1.0 - (1.0 - sure(label)) / (1.0 + WITNESS * kinds.others(*width) as f64),
-        _ => sure(label),
-    };
-    let rounded = |label: &Label| (witnessed(label).clamp(0.0, 1.0) * 1000.0).round() / 1000.0;
     let parts: Vec<&[Label]> = labels.chunks(TOGETHER).collect();
-    map_each(parts.len(), threads, |n| parts[n].iter().map(rounded).collect::<Vec<_>>()).concat()
+    let own = map_each(parts.len(), threads, |n| parts[n].iter().map(sure).collect::<Vec<_>>()).concat();
+    let kinds = Kinds::new(labels, &own);
+    let witnessed = |(label, own): (&Label, &f64)| match label {
+        Label::Rack { width, .. } => kinds.witnessed(*width, *own),
+        _ => *own,
+    };
+    let rounded = |sure: f64| (sure.clamp(0.0, 1.0) * 1000.0).round() / 1000.0;
+    labels.iter().zip(&own).map(witnessed).map(rounded).collect()
 }
 
 /// The key of all that is asked about a label but for the map.
@@ -90,8 +100,11 @@ fn key(labels: &[Label], label: &Label) -> Key {
     match label {
         Label::Corridor { axis: own, width, .. } => axis(kind(0), own, *width),
         Label::Junction { kind: own, at, corridors, .. } => {
-            let corridors = corridors.iter().filter_map(|&id| labels.get(id as usize));
-            corridors.fold(kind(1).with(*own as u64).numbers(at), |known, corridor| known.key(key(labels, corridor)))
+            let known = kind(1).with(*own as u64).numbers(at);
+            corridors.iter().fold(known, |known, &id| match labels.get(id as usize) {
+                Some(Label::Corridor { axis: own, width, .. }) => axis(known, own, *width),
+                _ => known,
+            })
         }
         Label::Region { polygon, .. } => kind(2).numbers(polygon.as_flattened()),
         Label::Door { axis: own, .. } => axis(kind(3), own, 0.0),

@@ -116,10 +116,10 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: 
             let ways = columns.ways();
             let aisles = between.map(|n| &aisles[n]);
             // Then the rows might as well be what lies between two ways across the rows.
-            let longest = aisles.iter().map(|aisle| aisle.length()).fold(f64::INFINITY, f64::min);
+            let shorter = aisles.iter().map(|aisle| aisle.length()).fold(f64::INFINITY, f64::min);
             let times = if view.pitch.is_some() { LONGER } else { 1.0 };
             let near = leading_across([view, other], &placed, row, widest).into_iter();
-            let judged = near.filter(|&n| strips[n].length() < times * longest);
+            let judged = near.filter(|&n| strips[n].length() < times * shorter);
             let cross = |n: usize| cross([view, other], row, (&columns, &ways), &strips[n], aisles);
             judged.filter_map(|n| cross(n).map(|crossed| (n, crossed))).collect()
         };

@@ -1,6 +1,7 @@
 //! What was found before: where the map and the lines have not changed, what was found from them holds.
 //!
 //! What a strip or a part of the map is made from is summed up in a key of 128 bits, and what was found is kept by it.
+//! Where nobody knows beforehand what will be looked at, the answer is kept with the part of the map that was.
 //! A survey looks into what another one kept before it looks at the pixels, so the answer is the same with and without.
 
 use super::corridors::Strip;

@@ -20,13 +20,13 @@ use crate::bands::{Later, Side, each, map_each};
 
 /// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
 const ALONE: (f64, f64) = (2.0, 5.0);
-/// Or so long where so many others run beside it that are as wide and as long but for this share, with no more than a
-/// rack between one and the next; as long for its width as what is no niche, where there is a rack and not a wall.
+/// Or so long, or as long for its width as what is no niche where there are racks and no walls between them, if so many
+/// others run beside it, no more than a rack away, that are as wide and as long but for this share.
 const RECURS: f64 = 3.5;
 const OTHERS: usize = 2;
 const ALIKE: f64 = 0.2;
-/// And one that is shut at both its ends, be it with a door, so many times, between sides if it is no such one: else it
-/// is a room, or what furniture leaves of one.
+/// One that is shut at both its ends, be it with a door, is so many times as long as wide: else it is a room. And where
+/// no such others run beside it something stands along both its sides: else it is what furniture leaves of a room.
 const SHUT: f64 = 4.5;
 /// A corridor that meets one other goes on beyond it, on one side for so many times its width and so far, metres, or on
 /// both together for as many times and so far: or it is a niche at the other's side.

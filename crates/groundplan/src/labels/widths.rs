@@ -50,7 +50,8 @@ impl Widths {
     }
 }
 
-/// The strips without those that lead through some rows of a place and have no width of what leads through all: bays.
+/// The strips without those that lead through some rows of a place and have no width of what leads through all: bays; nor
+/// those at a wall that the rows beside go on to.
 pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
     let mut stays = vec![true; strips.len()];
