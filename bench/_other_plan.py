@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -82,57 +82,56 @@ class Plan:
     crossings: list[Crossing]
 
 
-def measures(draw: random.Random) -> Measures:
-    """Draw a site's measures."""
-    return Measures(
-        aisle=draw.uniform(1.6, 4.2),
-        cross=draw.uniform(2.2, 5.0),
-        depth=draw.uniform(0.7, 1.3),
-        bay=draw.uniform(1.8, 3.6),
-        rows=draw.randint(3, 8),
-        blocks=draw.randint(1, 4),
-        bays=draw.randint(3, 8),
-        style=draw.choice(["solid", "hollow", "legs", "shelves"]),
-        fill=draw.choice([1, 0.9, 0.7, 0.5]),
-        ends=draw.choice(["both", "both", "west", "none"]),
-        walls=draw.choice(["rack", "aisle"]),
-        yaw=draw.uniform(-np.pi / 2, np.pi / 2),
-        resolution=draw.choice([0.03, 0.05, 0.05, 0.05, 0.1]),
-        look=draw.choice(["trinary", "grey", "drawn"]),
-        range=draw.choice([8, 15, 25]),
-        noise=draw.choice([0.01, 0.02, 0.03]),
-        clutter=draw.choice([0, 0, 10, 25]),
-        wall=draw.uniform(0.1, 0.3),
-    )
-
-
+#: What each measure is drawn from, in this order: between two numbers, or one of several.
+_RANGES: dict[str, Any] = {
+    "aisle": (1.6, 4.2),
+    "cross": (2.2, 5.0),
+    "depth": (0.7, 1.3),
+    "bay": (1.8, 3.6),
+    "rows": range(3, 9),
+    "blocks": range(1, 5),
+    "bays": range(3, 9),
+    "style": ["solid", "hollow", "legs", "shelves"],
+    "fill": [1, 0.9, 0.7, 0.5],
+    "ends": ["both", "both", "west", "none"],
+    "walls": ["rack", "aisle"],
+    "yaw": (-np.pi / 2, np.pi / 2),
+    "resolution": [0.03, 0.05, 0.05, 0.05, 0.1],
+    "look": ["trinary", "grey", "drawn"],
+    "range": [8, 15, 25],
+    "noise": [0.01, 0.02, 0.03],
+    "clutter": [0, 0, 10, 25],
+    "wall": (0.1, 0.3),
+}
+_WIDE = _RANGES | {
+    "aisle": (1.2, 6.0),
+    "cross": (1.6, 6.5),
+    "depth": (0.4, 1.6),
+    "bay": (1.0, 4.0),
+    "rows": [2, 3, 4, 6, 9, 13, 20],
+    "blocks": range(1, 6),
+    "bays": [2, 3, 5, 8, 14],
+    "fill": [1, 0.9, 0.8, 0.6],
+    "resolution": [0.02, 0.04, 0.05, 0.08, 0.1],
+    "range": [6, 12, 30],
+    "noise": [0.005, 0.03, 0.05],
+    "clutter": [0, 5, 20, 60],
+    "wall": (0.05, 0.4),
+}
 #: A wide site is no larger, square metres, and no longer, metres.
 _LARGEST, _LONGEST = 2600, 90
+
+
+def measures(draw: random.Random, ranges: dict[str, Any] = _RANGES) -> Measures:
+    """Draw a site's measures."""
+    drawn = (draw.uniform(*of) if isinstance(of, tuple) else draw.choice(of) for of in ranges.values())
+    return Measures(**dict(zip(ranges, drawn, strict=True)))
 
 
 def wide(draw: random.Random) -> Measures:
     """Draw measures from wider ranges: two to twenty rows, narrow and wide ways, thin racks, maps from 2 cm on."""
     while True:
-        site = Measures(
-            aisle=draw.uniform(1.2, 6.0),
-            cross=draw.uniform(1.6, 6.5),
-            depth=draw.uniform(0.4, 1.6),
-            bay=draw.uniform(1.0, 4.0),
-            rows=draw.choice([2, 3, 4, 6, 9, 13, 20]),
-            blocks=draw.randint(1, 5),
-            bays=draw.choice([2, 3, 5, 8, 14]),
-            style=draw.choice(["solid", "hollow", "legs", "shelves"]),
-            fill=draw.choice([1, 0.9, 0.8, 0.6]),
-            ends=draw.choice(["both", "both", "west", "none"]),
-            walls=draw.choice(["rack", "aisle"]),
-            yaw=draw.uniform(-np.pi / 2, np.pi / 2),
-            resolution=draw.choice([0.02, 0.04, 0.05, 0.08, 0.1]),
-            look=draw.choice(["trinary", "grey", "drawn"]),
-            range=draw.choice([6, 12, 30]),
-            noise=draw.choice([0.005, 0.03, 0.05]),
-            clutter=draw.choice([0, 5, 20, 60]),
-            wall=draw.uniform(0.05, 0.4),
-        )
+        site = measures(draw, _WIDE)
         length, depth = (site.bay * site.bays + site.cross) * site.blocks, (site.aisle + 2 * site.depth) * site.rows
         if length * depth <= _LARGEST and max(length, depth) <= _LONGEST:
             return site

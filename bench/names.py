@@ -13,9 +13,8 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from typing import Any
 
-import groundplan
-from groundplan import simulate
-from groundplan.evaluate._names import name_scores
+from groundplan.evaluate import Case
+from groundplan.evaluate._suite import remade
 
 KINDS: dict[str, dict[str, Any]] = {
     "plain": {},
@@ -31,7 +30,6 @@ KINDS: dict[str, dict[str, Any]] = {
 }
 FIGURES = ("names_aisles", "found_aisles", "names_regions", "found_regions", "names_racks", "found_racks")
 REMAKES = 5
-TURNED = 0.5  # degrees
 LOW = 0.95
 
 Site = tuple[str, int]
@@ -40,14 +38,8 @@ Site = tuple[str, int]
 def scored(site: Site) -> tuple[Site, dict[str, Any]]:
     """The scores of one site over its remakes."""
     kind, seed = site
-    options = KINDS[kind] | {"seed": seed}
-    yaw = options.pop("yaw", 0.0)
-    surveys = []
-    for remake in range(1 + REMAKES):
-        turn = (0.0, TURNED, -TURNED)[remake and 1 + remake % 2]
-        made = simulate.warehouse(yaw=yaw + turn, remake=remake, **options)
-        surveys.append((groundplan.survey(made.map, threads=1).to_dict(), made.truth))
-    return site, name_scores(*surveys[0], surveys[1:])
+    options = KINDS[kind] | {"seed": seed, "remakes": REMAKES}
+    return site, remade(Case(f"{kind}-{seed}", kind, "warehouse", options), "strips")
 
 
 def main() -> None:

@@ -15,8 +15,8 @@ from groundplan.evaluate._names import name_scores
 SMALL: dict[str, Any] = {"scan_every": 0.6, "beams": 480}
 
 
-def surveyed(made: simulate.Simulated) -> tuple[dict[str, Any], dict[str, Any]]:
-    return groundplan.survey(made.map).to_dict(), made.truth
+def surveyed(made: simulate.Simulated, square: float = 4.0) -> tuple[dict[str, Any], dict[str, Any]]:
+    return groundplan.survey(made.map, labels_square=square).to_dict(), made.truth
 
 
 def test_aisles_racks_and_regions_of_a_warehouse_keep_their_names_when_it_is_mapped_again() -> None:
@@ -26,6 +26,14 @@ def test_aisles_racks_and_regions_of_a_warehouse_keep_their_names_when_it_is_map
     scores = name_scores(*first, again)
     assert scores["names_aisles"] >= 0.9 and scores["names_regions"] == 1.0
     assert scores["names_racks"] >= 0.8
+
+
+def test_all_names_of_aisles_and_regions_hold_where_no_middle_lies_on_a_square_s_side() -> None:
+    place: dict[str, Any] = {"width": 26.0, "depth": 20.0, "seed": 7} | SMALL
+    first = surveyed(simulate.warehouse(**place), 5.0)
+    again = [surveyed(simulate.warehouse(remake=k, yaw=yaw, **place), 5.0) for k, yaw in ((1, 0.5), (2, -0.5))]
+    scores = name_scores(*first, again)
+    assert scores["names_aisles"] == scores["names_regions"] == 1.0
 
 
 def test_an_aisle_that_goes_renames_no_other() -> None:

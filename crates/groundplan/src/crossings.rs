@@ -9,8 +9,6 @@ pub struct Crossing {
     pub half: u32,
     /// The row after its last one.
     end: usize,
-    /// What the pixels left of it add, row by row, summed up by who asks.
-    pub left: u128,
 }
 
 /// The edges that cross the rows of a band, as they follow one another along lines.
@@ -75,7 +73,7 @@ impl Crossings {
             crossing.sort_unstable_by_key(|(_, rows)| rows.start);
             let (Some(first), Some(last)) = (crossing.first(), crossing.last()) else { return };
             let (edge, rows) = (edges.len(), first.1.start..last.1.end);
-            edges.extend(crossing.drain(..).map(|(half, rows)| Crossing { half, end: rows.end, left: 0 }));
+            edges.extend(crossing.drain(..).map(|(half, rows)| Crossing { half, end: rows.end }));
             walks.push(Walk::new(line, edge, &edges[edge], rows, width));
         };
         let crossed = |edge: u32| {
@@ -106,7 +104,8 @@ impl Crossings {
             }
             for edge in low..edges.end {
                 let start = arrangement.rows_below[arrangement.edges[edge as usize][0] as usize] as usize;
-                if if rising { start >= band.end } else { start <= band.start } {
+                let is_beyond = if rising { start >= band.end } else { start <= band.start };
+                if is_beyond {
                     break;
                 }
                 crossing.extend(crossed(edge));

@@ -124,7 +124,9 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads
         let parts = map_bands(some.len(), threads, |band| {
             let band = band.start + some.start..band.end + some.start;
             let mut left: Vec<Packed> = vec![0; width / WORD + 1];
-            let Crossings { mut walks, mut edges } = Crossings::new(arrangement, width, &band);
+            let Crossings { mut walks, edges } = Crossings::new(arrangement, width, &band);
+            // What the pixels left of each edge add, row by row.
+            let mut sums: Vec<Packed> = vec![0; edges.len()];
             for y in band {
                 let row = grid.row(y);
                 let words = row.chunks_exact(WORD);
@@ -142,14 +144,14 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads
                 for walk in walks.iter_mut().filter(|walk| walk.rows.contains(&y)) {
                     let (edge, column) = walk.next(y, &edges, width);
                     let rest = &row[column - column % WORD..column];
-                    edges[edge].left +=
+                    sums[edge] +=
                         left[column / WORD] + rest.iter().map(|&value| packed[usize::from(value)]).sum::<Packed>();
                 }
             }
-            edges
+            (edges, sums)
         });
-        for Crossing { half, left, .. } in parts.into_iter().flatten() {
-            let left = unpacked(left);
+        for (Crossing { half, .. }, sum) in parts.into_iter().flat_map(|(edges, sums)| edges.into_iter().zip(sums)) {
+            let left = unpacked(sum);
             for (half, sign) in [(half, 1), (Arrangement::twin(half), -1)] {
                 if let Some(total) = totals.get_mut(arrangement.face(half) as usize) {
                     total.add(sign, left);

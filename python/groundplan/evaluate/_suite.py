@@ -174,7 +174,7 @@ def _die_of_interrupts() -> None:
 def _case(case: Case, labellers: tuple[str, ...]) -> dict[str, dict[str, Any]]:
     """Scores of one case by method."""
     if "remakes" in case.options:
-        return {method: _remade(case, method) for method in labellers}
+        return {method: remade(case, method) for method in labellers}
     if case.place == "warehouse":
         made = simulate.warehouse(**case.options)
         return _each(labellers, made.map, lambda found: score(found, made.truth))
@@ -198,7 +198,7 @@ def _roads(made: simulate.Simulated, method: str) -> dict[str, Any]:
         return road_scores(*read_route(file), made.truth, made.map)
 
 
-def _remade(case: Case, method: str) -> dict[str, Any]:
+def remade(case: Case, method: str) -> dict[str, Any]:
     """Names over several maps of one place, each but the first turned by half a degree one way or the other."""
     make: Callable[..., simulate.Simulated] = getattr(simulate, case.place)
     options = {key: value for key, value in case.options.items() if key != "remakes"}

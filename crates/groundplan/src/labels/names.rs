@@ -1,7 +1,7 @@
 //! Names of corridors by place, as of everything else (`places.rs`): the letter of the direction and the row or column
 //! of the site's squares in which the corridor runs. What appears or goes renames nothing else, as a count would.
 
-use super::places::{Squares, suffix};
+use super::places::{Squares, told_apart};
 use super::turned::Turned;
 
 /// A corridor to be named.
@@ -28,12 +28,5 @@ pub fn names(views: &[Turned], squares: &Squares, items: &[Named]) -> Vec<String
         let longer = about(&items[b]).total_cmp(&about(&items[a]));
         keys[a].cmp(&keys[b]).then(longer).then_with(|| ahead(&items[a]).total_cmp(&ahead(&items[b])))
     });
-    let mut names = vec![String::new(); items.len()];
-    for group in order.chunk_by(|&a, &b| keys[a] == keys[b]) {
-        for (n, &item) in group.iter().enumerate() {
-            let (is_other, row) = keys[item];
-            names[item] = format!("{}{:02}{}", if is_other { "C" } else { "A" }, row + 1, suffix(n));
-        }
-    }
-    names
+    told_apart(&order, &keys, |(is_other, row)| format!("{}{:02}", if *is_other { "C" } else { "A" }, row + 1))
 }

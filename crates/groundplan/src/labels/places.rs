@@ -99,19 +99,23 @@ impl Squares {
         let squares: Vec<_> = items.iter().map(square).collect();
         let mut order: Vec<usize> = (0..items.len()).collect();
         order.sort_by(|&a, &b| squares[a].cmp(&squares[b]).then(items[b].weight.total_cmp(&items[a].weight)));
-        let mut names = vec![String::new(); items.len()];
-        for group in order.chunk_by(|&a, &b| squares[a] == squares[b]) {
-            for (n, &item) in group.iter().enumerate() {
-                let [row, column] = squares[item];
-                names[item] = format!("{letter}{}-{:02}{}", row + 1, column + 1, suffix(n));
-            }
-        }
-        names
+        told_apart(&order, &squares, |[row, column]| format!("{letter}{}-{:02}", row + 1, column + 1))
     }
 }
 
+/// The names of some places, of which those of one place follow one another in an order and are told apart by suffixes.
+pub fn told_apart<P: PartialEq>(order: &[usize], places: &[P], name: impl Fn(&P) -> String) -> Vec<String> {
+    let mut names = vec![String::new(); places.len()];
+    for group in order.chunk_by(|&a, &b| places[a] == places[b]) {
+        for (n, &item) in group.iter().enumerate() {
+            names[item] = name(&places[item]) + &suffix(n);
+        }
+    }
+    names
+}
+
 /// Nothing for the first, then b to z, then numbers.
-pub fn suffix(n: usize) -> String {
+fn suffix(n: usize) -> String {
     match n {
         0 => String::new(),
         1..=25 => char::from(b'a' + n as u8).to_string(),

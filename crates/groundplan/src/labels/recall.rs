@@ -61,13 +61,13 @@ impl Key {
 type SeenRows = (Arc<Band>, Vec<Told>);
 
 /// What was found, by what it was found from.
-type Known<T> = Arc<HashMap<Key, T, BuildHasherDefault<Place>>>;
+type Known<T> = Arc<HashMap<Key, T, BuildHasherDefault<AsItIs>>>;
 
 /// What is known by keys is found by them as they are: they have no pattern.
 #[derive(Debug, Default)]
-struct Place(u64);
+struct AsItIs(u64);
 
-impl Hasher for Place {
+impl Hasher for AsItIs {
     fn write_u128(&mut self, key: u128) {
         self.0 = key as u64;
     }
@@ -157,7 +157,7 @@ pub(super) struct Looked<T> {
 #[derive(Debug)]
 pub(super) struct Found<T> {
     before: Known<T>,
-    now: Option<Mutex<HashMap<Key, T, BuildHasherDefault<Place>>>>,
+    now: Option<Mutex<HashMap<Key, T, BuildHasherDefault<AsItIs>>>>,
 }
 
 impl<T> Default for Found<T> {
