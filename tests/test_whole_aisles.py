@@ -60,3 +60,23 @@ def along_goods(gap: int) -> npt.NDArray[np.uint8]:
 def test_an_aisle_goes_on_across_a_hall_that_is_three_times_as_long_as_it_is_wide(gap: int) -> None:
     (aisle,) = groundplan.survey(along_goods(gap), resolution=RESOLUTION).of_kind("corridor")
     assert abs(np.subtract(*aisle["axis"])[0]) == pytest.approx(41.0 + gap * RESOLUTION, abs=2.0)
+
+
+def racks_past_one_another(apart: int, past: int) -> npt.NDArray[np.uint8]:
+    """A hall of 38 m by 30 m with two racks of 18 m by 2 m, of which the one begins so many pixels before the other."""
+    picture = np.full((640, 800), 205, np.uint8)
+    picture[18:622, 18:782] = 0
+    picture[20:620, 20:780] = 254
+    for y, x in ((200, 150), (240 + apart, 150 + past)):
+        picture[y : y + 40, x : x + 360] = 0
+        picture[y + 2 : y + 38, x + 2 : x + 358] = 205
+    return picture
+
+
+@pytest.mark.parametrize(("apart", "past"), [(120, 120), (140, 90), (150, 60)])
+def test_racks_that_face_one_another_for_less_than_twice_their_distance_have_an_aisle_between(
+    apart: int, past: int
+) -> None:
+    (aisle,) = groundplan.survey(racks_past_one_another(apart, past), resolution=RESOLUTION).of_kind("corridor")
+    assert abs(np.subtract(*aisle["axis"])[0]) > 18.0
+    assert 20.0 - apart * RESOLUTION < aisle["axis"][0][1] < 20.0

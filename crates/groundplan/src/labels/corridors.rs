@@ -44,6 +44,11 @@ impl Strip {
         self.along[1] - self.along[0]
     }
 
+    /// Too short to be a way by itself.
+    pub fn is_short(&self) -> bool {
+        self.length() < ALONE.1.max(ALONE.0 * self.width())
+    }
+
     /// Its direction and its places, as [`placed`] takes them.
     pub fn place(&self) -> (usize, [f64; 2], [f64; 2]) {
         (self.direction, self.along, self.across)
@@ -54,6 +59,9 @@ impl Strip {
         f64::midpoint(self.across[0], self.across[1])
     }
 }
+
+/// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
+pub const ALONE: (f64, f64) = (2.0, 5.0);
 /// Strips whose directions differ by an angle of a smaller sine run nearly the same way.
 const ASKEW: f64 = 0.5;
 
@@ -63,8 +71,8 @@ pub fn widest(strips: &[Strip]) -> f64 {
 }
 
 /// Corridors along every direction, in the order of the directions: of each those between lines by their places, and
-/// then the ragged ones, the best first.
-pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
+/// then the ragged ones, the best first. And ragged ways over such as are too short by themselves.
+pub fn find(evidence: &Evidence, views: &[Turned]) -> (Vec<Strip>, Vec<Strip>) {
     // Each view shares its own work out among what threads are left.
     let threads = evidence.threads.div_ceil(views.len().max(1));
     let found = map_each(views.len(), evidence.threads, |n| {
@@ -74,13 +82,18 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
         parts.retain(|c| !c.is_corridor);
         let mut known = family.best(whole, &[]);
         let sure: Vec<Strip> = known.iter().filter(|strip| !strip.bays).cloned().collect();
-        let ragged = ragged::find(evidence, views, &views[n], &sure, threads);
+        let (ragged, over) = ragged::find(evidence, views, &views[n], &sure, threads);
         // What is no corridor as a whole may be one without what others have of it.
         known.extend(family.best(parts, &[&known[..], &ragged].concat()));
         known.sort_by(|a, b| a.middle().total_cmp(&b.middle()).then(a.along[0].total_cmp(&b.along[0])));
-        (known, ragged)
+        (known, ragged, over)
     });
-    let (known, ragged): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+    let (mut known, mut ragged, mut over) = (Vec::new(), Vec::new(), Vec::new());
+    for (between, beside, instead) in found {
+        known.push(between);
+        ragged.push(beside);
+        over.extend(instead);
+    }
     let mut strips = known.concat();
     let mut placed = placed(views, strips.iter().map(Strip::place));
     for mut ragged in ragged {
@@ -103,7 +116,8 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Vec<Strip> {
     });
     strips.extend(more.into_iter().flatten());
     strips.sort_by_key(|strip| strip.direction);
-    strips
+    over.retain(|way| !is_askew_in(views, way, &strips, &placed));
+    (strips, over)
 }
 
 /// True when a strip's middle lies in one of others, by their direction and place, that runs nearly the same way.

@@ -80,8 +80,15 @@ impl Held {
     }
 }
 
-/// The ways along one direction beside those that are known, the best first.
-pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip], threads: usize) -> Vec<Strip> {
+/// The ways along one direction beside those that are known, the best first; and those over known ones that are too short
+/// by themselves, for where these turn out to be none.
+pub fn find(
+    evidence: &Evidence,
+    views: &[Turned],
+    view: &Turned,
+    known: &[Strip],
+    threads: usize,
+) -> (Vec<Strip>, Vec<Strip>) {
     let parameters = evidence.parameters;
     let bay = corridors::pitches(views, view).into_iter().fold(0.0, |widest, pitch| f64::max(widest, BAY * pitch));
     let seen = Seen::new(view);
@@ -115,6 +122,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     });
     candidates.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.tried.cmp(&b.tried)));
     let mut all = known.to_vec();
+    let mut over = Vec::new();
     let mut placed = Beside::of(view);
     let mut next = 0;
     for short in candidates {
@@ -129,13 +137,16 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
             all.push(candidate);
             continue;
         }
+        if rivals.iter().all(|rival| rival.is_short()) && !over.iter().any(|way| is_beside(&candidate, way)) {
+            over.push(candidate.clone());
+        }
         let whole = Candidate::new(view, candidate.across, bay);
         let ways = whole.ways_left(by, whole.around(&candidate), &rivals);
         all.extend(
             ways.into_iter().filter(|way| way.along[0] < candidate.along[1] && candidate.along[0] < way.along[1]),
         );
     }
-    all.split_off(known.len())
+    (all.split_off(known.len()), over)
 }
 
 /// A way in little room: of a large map there are millions, of which few stay.
@@ -166,7 +177,7 @@ fn ragged(view: &Turned, along: [f64; 2], across: [f64; 2], score: f64) -> Strip
 }
 
 /// True when two strips share so much of their width that one of them is too much.
-fn is_beside(one: &Strip, two: &Strip) -> bool {
+pub fn is_beside(one: &Strip, two: &Strip) -> bool {
     let shared = one.across[1].min(two.across[1]) - one.across[0].max(two.across[0]);
     let together = one.along[1].min(two.along[1]) - one.along[0].max(two.along[0]);
     together > 0.0 && shared > SHARED * one.width().min(two.width())

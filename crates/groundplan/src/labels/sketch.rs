@@ -2,7 +2,7 @@
 //! that may be a door.
 
 use super::beside::{Beside, placed};
-use super::corridors::{self, Strip};
+use super::corridors::{self, ALONE, Strip};
 use super::gates;
 use super::joined;
 use super::junctions::{self, Meeting};
@@ -10,6 +10,7 @@ use super::legs;
 use super::look::Look;
 use super::narrowed;
 use super::racks::{self, Row};
+use super::ragged;
 use super::rooms::{Bar, Space};
 use super::sided;
 use super::turned::Turned;
@@ -18,9 +19,7 @@ use super::widths;
 use super::{Evidence, Ground};
 use crate::bands::{Later, Side, each, map_each};
 
-/// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
-const ALONE: (f64, f64) = (2.0, 5.0);
-/// Or so long, or as long for its width as what is no niche where there are racks and no walls between them, if so many
+/// A corridor that meets no other is so long that it is one alone, or so long, or as long for its width as what is no niche where there are racks and no walls between them, if so many
 /// others run beside it, no more than a rack away, that are as wide and as long but for this share.
 const RECURS: f64 = 3.5;
 const OTHERS: usize = 2;
@@ -126,10 +125,22 @@ pub struct Plan {
 
 impl Plan {
     fn of(evidence: &Evidence, look: &Look, views: &[Turned], on_legs: &[Row]) -> Self {
-        let found = joined::join(views, corridors::find(evidence, views), evidence.parameters.labels_min_width);
+        let least = evidence.parameters.labels_min_width;
+        let (found, over) = corridors::find(evidence, views);
+        let found = joined::join(views, found, least);
         let found = gates::without_bays(evidence, look, views, found);
         let threads = evidence.threads;
         let mut plan = Self::new(views, found, threads);
+        // What was too short to stay bars no way whose sides are no lines.
+        let is_free = |way: &Strip| {
+            let mut beside = plan.strips.iter().filter(|strip| strip.direction == way.direction);
+            beside.all(|strip| !ragged::is_beside(way, strip))
+        };
+        let more: Vec<Strip> = over.into_iter().filter(is_free).collect();
+        if !more.is_empty() {
+            let all = joined::join(views, [plan.strips, more].concat(), least);
+            plan = Self::new(views, all, threads);
+        }
         let gates = gates::find(evidence, look, views, &plan.strips, &plan.rows);
         let (known, more) = (plan.strips.len(), gates.len());
         plan.strips.extend(gates);
