@@ -275,6 +275,13 @@ def test_aisles_are_not_led_on_through_the_rows_that_stand_beyond_their_ends(sha
     assert len(ends) == 2 and all(end == pytest.approx(-2.4, abs=0.5) for _, end in ends)
 
 
+def test_what_lies_beside_an_aisle_nearly_along_it_does_not_cross_it(shared: Path) -> None:
+    survey = groundplan.survey(groundplan.read(shared / "maps" / "rbk_warehouse.yaml"))
+    ways = [np.subtract(*label["axis"]) for label in survey.of_kind("corridor")]
+    cosines = [abs(one @ two) / np.hypot(*one) / np.hypot(*two) for one in ways for two in ways if one is not two]
+    assert all(cosine < 0.5 or cosine > 0.999 for cosine in cosines)
+
+
 @pytest.mark.parametrize(("name", "aisles", "racks"), [("radish_intel_jones_farms", 7, 0), ("textile_factory", 5, 0)])
 def test_real_sites_have_the_aisles_that_a_person_counts(name: str, aisles: int, racks: int, shared: Path) -> None:
     survey = groundplan.survey(groundplan.read(shared / "maps" / f"{name}.yaml"))

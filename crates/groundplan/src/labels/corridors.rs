@@ -63,7 +63,7 @@ impl Strip {
 /// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
 pub const ALONE: (f64, f64) = (2.0, 5.0);
 /// Strips whose directions differ by an angle of a smaller sine run nearly the same way.
-const ASKEW: f64 = 0.5;
+pub const ASKEW: f64 = 0.5;
 
 /// The width of the widest, metres.
 pub fn widest(strips: &[Strip]) -> f64 {

@@ -210,6 +210,10 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
         if places[n] < strip.along[0] - near || places[n] > strip.along[1] + near {
             return None;
         }
+        // Of two that run nearly the same way, one that is shorter than what they share does not cross the other.
+        if sine.abs() < corridors::ASKEW && strip.length() < reach[n] {
+            return None;
+        }
     }
     let mut ways = Vec::new();
     let (mut led_on, mut shut) = ([false; 2], [false; 2]);
