@@ -20,7 +20,7 @@ Flags = npt.NDArray[np.bool_]
 
 _PAD = 1.0  # metres of world around the hall ...
 _BORDER = 0.5  # ... and of map around that
-_BEAMS = 900
+BEAMS = 900
 _AT_ONCE = 64  # steps of a beam that are looked at together
 _EVERY = 0.1  # metres between two looks along a face
 _BEFORE = 0.3  # metres before it where floor must be seen ...
@@ -72,7 +72,7 @@ def site(seed: int, is_wide: bool = False) -> Site:
     if measured.look == "drawn":
         greys = _drawn(measured, laid_out, frame)
     else:
-        greys = _greys(measured.look, *_scanned(measured, laid_out, frame, goods))
+        greys = valued(measured.look, *_scanned(measured, laid_out, frame, goods))
     made = groundplan.from_array(np.ascontiguousarray(greys[::-1]), measured.resolution, frame.low)
     return Site(measured, made, _truth(laid_out, frame, made.states[greys] == FREE))
 
@@ -117,7 +117,7 @@ def _scanned(measured: Measures, laid_out: Plan, frame: _Frame, noise: np.random
         world[max(0, low) : max(high, low + 1), max(0, left) : max(right, left + 1)] = True
     poses = [(float(x), y) for y in laid_out.aisles for x in np.arange(0.6, width - 0.5, 1.0)]
     poses += [(x, float(y)) for x in laid_out.crosses for y in np.arange(0.6, depth - 0.5, 1.0)]
-    turn = np.linspace(0, 2 * math.pi, _BEAMS, endpoint=False)
+    turn = np.linspace(0, 2 * math.pi, BEAMS, endpoint=False)
     looks = np.arange(0.1, measured.range, measured.resolution * 0.7)
     hits, passes = np.zeros(frame.shape), np.zeros(frame.shape)
     for px, py in poses:
@@ -125,9 +125,9 @@ def _scanned(measured: Measures, laid_out: Plan, frame: _Frame, noise: np.random
             continue
         angles = turn + noise.uniform(0, 0.01)
         cos, sin = np.cos(angles), np.sin(angles)
-        ranges = _cast(world, (px, py), (cos, sin), step, measured.range)
+        ranges = cast(world, (px + _PAD, py + _PAD), (cos, sin), step, measured.range)
         is_hit = np.isfinite(ranges)
-        ranges = np.where(is_hit, ranges, measured.range) + is_hit * noise.normal(0, measured.noise, _BEAMS)
+        ranges = np.where(is_hit, ranges, measured.range) + is_hit * noise.normal(0, measured.noise, BEAMS)
         row, column, known = frame.pixels(px + ranges * cos, py + ranges * sin)
         known &= is_hit
         np.add.at(hits, (row[known], column[known]), 1)
@@ -140,15 +140,15 @@ def _scanned(measured: Measures, laid_out: Plan, frame: _Frame, noise: np.random
     return hits, passes
 
 
-def _cast(world: Flags, at: Point, beams: tuple[Floats, Floats], step: float, reach: float) -> Floats:
-    """How far each beam goes, metres; infinite where it meets nothing."""
+def cast(world: Flags, at: Point, beams: tuple[Floats, Floats], step: float, reach: float) -> Floats:
+    """How far each beam goes from a point of the world, metres; infinite where it meets nothing."""
     steps = np.arange(0.1, reach, step)
-    ranges = np.full(_BEAMS, np.inf)
-    going = np.arange(_BEAMS)
+    ranges = np.full(BEAMS, np.inf)
+    going = np.arange(BEAMS)
     for part in np.split(steps, range(_AT_ONCE, len(steps), _AT_ONCE)):
         cos, sin = (each[going, None] for each in beams)
-        columns = ((at[0] + part * cos + _PAD) / step).astype(int).clip(0, world.shape[1] - 1)
-        rows = ((at[1] + part * sin + _PAD) / step).astype(int).clip(0, world.shape[0] - 1)
+        columns = ((at[0] + part * cos) / step).astype(int).clip(0, world.shape[1] - 1)
+        rows = ((at[1] + part * sin) / step).astype(int).clip(0, world.shape[0] - 1)
         met = world[rows, columns]
         struck = met.any(axis=1)
         ranges[going[struck]] = part[met[struck].argmax(axis=1)] + step / 2
@@ -156,7 +156,7 @@ def _cast(world: Flags, at: Point, beams: tuple[Floats, Floats], step: float, re
     return ranges
 
 
-def _greys(look: str, hits: Floats, passes: Floats) -> npt.NDArray[np.uint8]:
+def valued(look: str, hits: Floats, passes: Floats) -> npt.NDArray[np.uint8]:
     """Three values by the share of beams that were hits, or the greys of log-odds that are held."""
     seen = hits + passes > 0
     if look == "trinary":
@@ -177,7 +177,7 @@ def _truth(laid_out: Plan, frame: _Frame, free: Flags) -> dict[str, Any]:
     lines = [
         {"kind": face.kind, "p": frame.point(p), "q": frame.point(q)}
         for face in laid_out.faces
-        for p, q in _seen_parts(face, is_free)
+        for p, q in seen_parts(face, is_free)
     ]
     angle = (frame.yaw + math.pi / 2) % math.pi - math.pi / 2
     return {
@@ -196,7 +196,7 @@ def _truth(laid_out: Plan, frame: _Frame, free: Flags) -> dict[str, Any]:
     }
 
 
-def _seen_parts(face: Face, is_free: Callable[[Floats, Floats], Flags]) -> list[tuple[Point, Point]]:
+def seen_parts(face: Face, is_free: Callable[[Floats, Floats], Flags]) -> list[tuple[Point, Point]]:
     """The parts of a face before which floor was seen, with gaps as long as a bay; racks hide most of a wall."""
     length = math.dist(face.p, face.q)
     along = np.linspace(0, 1, round(length / _EVERY) + 1)

@@ -153,14 +153,9 @@ def plan(site: Measures, draw: random.Random, goods: np.random.Generator) -> Pla
                 faces.append(Face("rack", (left, low), (right, low), (0, -1)))
             if high < depth:
                 faces.append(Face("rack", (left, high), (right, high), (0, 1)))
-            rack = (left, low, right, high)
-            if site.style == "solid":
-                boxes.append(rack)
-            elif site.style == "hollow":
-                boxes += _hollow(rack)
-                hidden.append(rack)
-            else:
-                boxes += _open(site, rack, goods)
+            stocked, unseen = stock(site, (left, low, right, high), goods)
+            boxes += stocked
+            hidden += unseen
     boxes += [_clutter(site, width, aisles, draw, goods) for _ in range(site.clutter)]
     first = crosses[0] if site.ends != "none" else 0.0
     last = crosses[-1] if site.ends == "both" else width
@@ -203,6 +198,13 @@ def _blocks(site: Measures) -> tuple[list[tuple[float, float]], list[float], flo
             crosses.append(x + site.cross / 2)
             x += site.cross
     return blocks, crosses, x
+
+
+def stock(site: Measures, rack: Box, goods: np.random.Generator) -> tuple[list[Box], list[Box]]:
+    """What stands of a rack, single or back to back, and its inside where a drawing leaves that out."""
+    if site.style == "solid":
+        return [rack], []
+    return (_hollow(rack), [rack]) if site.style == "hollow" else (_open(site, rack, goods), [])
 
 
 def _hollow(rack: Box) -> list[Box]:
