@@ -90,6 +90,16 @@ def test_furniture_splits_no_room() -> None:
     assert len(found.of_kind("door")) == 1
 
 
+@pytest.mark.parametrize("turn", [0, 20])
+@pytest.mark.parametrize("hinge", [112, 128])
+def test_the_leaf_of_a_door_that_stands_open_parts_no_room(hinge: int, turn: float) -> None:
+    """It is as long as the doorway is wide, and beyond its tip 2 m of the room are open."""
+    plan = Canvas(280, 260).turn(turn).room(40, 40, 140, 200).room(137, 40, 201, 200).box(137, 111, 140, 129, FREE)
+    found = survey(plan.box(140, hinge - 1, 158, hinge + 1).picture)
+    assert len(found.of_kind("region")) == 2
+    assert len(found.of_kind("door")) == 1
+
+
 def test_a_corridor_and_its_rooms() -> None:
     found = zoo.surveyed("rows_of_offices")
     uses = [region["use"] for region in found.of_kind("region")]

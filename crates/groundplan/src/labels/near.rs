@@ -16,7 +16,7 @@ pub struct Near {
 }
 
 impl Near {
-    /// Points with their numbers; [`Near::within`] asks for them.
+    /// Points with their numbers; [`Near::within`] and [`Near::about`] ask for them.
     pub fn points(points: &[(u32, [f64; 2])]) -> Self {
         let mut made = Self::over(points.iter().map(|(_, point)| *point), points.len());
         let entries: Vec<_> = points.iter().map(|&(number, point)| (made.bucket(point), number)).collect();
@@ -49,6 +49,11 @@ impl Near {
         let mut found = Vec::new();
         self.buckets(polygon, |bucket| found.extend_from_slice(self.of(bucket)));
         found
+    }
+
+    /// The points that may lie within a distance of a place, in no order.
+    pub fn about(&self, [x, y]: [f64; 2], distance: f64) -> Vec<u32> {
+        self.within(&[[x - distance, y - distance], [x + distance, y + distance]])
     }
 
     /// The polygons that may touch another, in the order of their numbers.

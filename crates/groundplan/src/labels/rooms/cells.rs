@@ -3,6 +3,7 @@
 
 use super::fill::fill;
 use super::gaps::Bar;
+use super::leaves;
 use super::raster::Raster;
 use super::runs::{Run, Runs, runs_of};
 use crate::bits::{WORD, lowest};
@@ -22,6 +23,8 @@ const PER_METRE: f64 = 0.001;
 const DOORWAY: f64 = 1.0;
 /// A piece whose outline is open for more than this share is part of what it opens into.
 const OPEN: f64 = 0.6;
+/// What the leaf of a door leaves open is a way of its own when it is narrower than this share of the space.
+const BESIDE_LEAF: f64 = 0.5;
 
 /// Regions by pixel, and the jambs of what parts them, in the raster's places.
 pub struct Cells {
@@ -59,6 +62,7 @@ pub fn find(raster: &Raster, bars: &[Bar], rules: &Rules) -> Cells {
     let mut joining = Joining::new(raster, bars, rules, &stretches, pieces, count);
     joining.join_open();
     joining.join_unwalled();
+    joining.join_beyond_leaves();
     let roots: Vec<u32> = (0..joining.wall.len() as u32).map(|n| joining.sets.of(n)).collect();
     let mut regions = joining.pieces;
     regions.all.iter_mut().for_each(|run| run.number = roots[run.number as usize]);
@@ -228,6 +232,27 @@ impl<'a> Joining<'a> {
                 self.join(sides);
             } else {
                 break;
+            }
+        }
+    }
+
+    /// Joins what only the leaf of a door, standing open, parts.
+    fn join_beyond_leaves(&mut self) {
+        let parting: Vec<usize> = (0..self.stretches.len())
+            .filter(|&n| {
+                let [one, other] = self.sides(n);
+                one != other
+            })
+            .collect();
+        let opening = |n: &usize| {
+            let Stretch { bar, pixels, .. } = &self.stretches[*n];
+            Bar { ends: ends(self.raster, &self.bars[*bar], pixels) }
+        };
+        let openings: Vec<Bar> = parting.iter().map(opening).collect();
+        for (n, is_beyond) in parting.into_iter().zip(leaves::beyond(&openings, self.raster)) {
+            let sides = self.sides(n);
+            if is_beyond && sides[0] != sides[1] && self.measure(n).value >= BESIDE_LEAF {
+                self.join(sides);
             }
         }
     }

@@ -13,6 +13,7 @@ mod fill;
 mod fine;
 mod gaps;
 mod islands;
+mod leaves;
 mod narrows;
 mod outlines;
 mod raster;
@@ -172,10 +173,8 @@ impl Space {
         let ends: Vec<_> = (0..).zip(&bars).flat_map(|(n, gap)| gap.ends.map(|end| (n, end))).collect();
         let near = Near::points(&ends);
         let fresh = |narrow: &&Bar| {
-            let [x, y] = narrow.ends[0];
-            let around = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-            let around = around.map(|[s, t]| [x + s * together, y + t * together]);
-            !near.within(&around).into_iter().any(|gap| bars[gap as usize].is_near(narrow, together))
+            let about = near.about(narrow.ends[0], together);
+            !about.into_iter().any(|gap| bars[gap as usize].is_near(narrow, together))
         };
         let narrows: Vec<Bar> = self.narrows.iter().filter(fresh).copied().collect();
         bars.extend(narrows);
