@@ -2,25 +2,23 @@
 //! of the site's squares in which the corridor runs. What appears or goes renames nothing else, as a count would.
 
 use super::places::{Squares, told_apart};
-use super::turned::Turned;
 
 /// A corridor to be named.
 pub struct Named {
-    /// Index of the direction.
-    pub direction: usize,
+    /// The angle of its direction, which may be the main one.
+    pub angle: f64,
+    pub is_main: bool,
     /// Its middle in the map frame, metres.
     pub middle: [f64; 2],
-    /// How long it is, metres: as much it says for its direction being the main one.
+    /// Metres.
     pub length: f64,
 }
 
 /// A name for each: `A` of the main direction, `C` of the others, and the row. Of several in one row the longest has the
 /// plain name, and of those about as long (within the square root of two) the first along the row.
-pub fn names(views: &[Turned], squares: &Squares, items: &[Named]) -> Vec<String> {
-    let weight = |d: usize| items.iter().filter(|i| i.direction == d).map(|i| i.length).sum::<f64>();
-    let main = (0..views.len()).max_by(|&a, &b| weight(a).total_cmp(&weight(b)).then(b.cmp(&a))).unwrap_or(0);
-    let row = |item: &Named| squares.row(views[item.direction].angle, item.middle);
-    let keys: Vec<(bool, usize)> = items.iter().map(|item| (item.direction != main, row(item))).collect();
+pub fn names(squares: &Squares, items: &[Named]) -> Vec<String> {
+    let key = |item: &Named| (!item.is_main, squares.row(item.angle, item.middle));
+    let keys: Vec<(bool, usize)> = items.iter().map(key).collect();
     let ahead = |item: &Named| squares.ahead(item.middle);
     let about = |item: &Named| (2.0 * libm::log2(item.length)).floor();
     let mut order: Vec<usize> = (0..items.len()).collect();

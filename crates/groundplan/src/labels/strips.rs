@@ -45,13 +45,15 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
             corridors: corridors.into_iter().map(|c| c as u32).collect(),
         })
         .collect();
+    let main = main_of(&views, &strips);
+    let squares = Squares::new(main, evidence);
     let named = strips.iter().zip(&extents).map(|(strip, along)| Named {
-        direction: strip.direction,
+        angle: views[strip.direction].angle,
+        is_main: main.is_some_and(|main| main.direction == strip.direction),
         middle: views[strip.direction].to_map([f64::midpoint(along[0], along[1]), strip.middle()]),
         length: along[1] - along[0],
     });
-    let squares = squares(evidence, &views, &strips);
-    let names = names(&views, &squares, &named.collect::<Vec<_>>());
+    let names = names(&squares, &named.collect::<Vec<_>>());
     let mut faces = Faces::new(division, |state| state == State::Free);
     let mut labels: Vec<Label> = strips
         .iter()
@@ -125,12 +127,11 @@ fn racked(
     }
 }
 
-/// Squares along the direction that has most corridor, or where there is none, most structure.
-fn squares(evidence: &Evidence, views: &[Turned], strips: &[Strip]) -> Squares {
+/// The direction that has most corridor, or where there is none, most structure.
+fn main_of<'a>(views: &'a [Turned], strips: &[Strip]) -> Option<&'a Turned> {
     let length =
         |view: &Turned| strips.iter().filter(|s| s.direction == view.direction).map(Strip::length).sum::<f64>();
-    let main = views.iter().rev().max_by(|a, b| length(a).total_cmp(&length(b)));
-    Squares::new(main, evidence)
+    views.iter().rev().max_by(|a, b| length(a).total_cmp(&length(b)))
 }
 
 fn pillar_labels(evidence: &Evidence, raster: &Raster, grounds: &[Vec<[f64; 2]>], squares: &Squares) -> Vec<Label> {
