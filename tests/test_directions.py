@@ -97,6 +97,29 @@ def test_narrow_rows_on_a_coarse_map_are_measured_where_staircases_look_like_oth
     assert (apart([angle, angle + np.pi / 2], found).min(axis=1) < np.radians(0.1)).all(), np.degrees(found)
 
 
+@pytest.mark.parametrize("turn", [16.0, 35.0, 50.0])
+def test_each_wing_has_the_direction_of_its_ends_be_that_little_beside_its_long_rows(turn: float) -> None:
+    """A hall of 40 m by 16.5 m with four rows of racks, and a wing of 25 m by 12 m with three."""
+    y, x = np.mgrid[-30.0:30.0:0.1, -45.0:35.0:0.1]
+    picture = np.full(x.shape, 205, dtype=np.uint8)
+    for left, bottom, degrees, length, rows in (
+        (-10.0, -8.0, 10.0, 40.0, 4),
+        (-15.0, -3.0, 10.0 + turn + 180, 25.0, 3),
+    ):
+        angle, depth = np.radians(degrees), rows * 4.5 - 1.5
+        along = (x - left) * np.cos(angle) + (y - bottom) * np.sin(angle)
+        across = (y - bottom) * np.cos(angle) - (x - left) * np.sin(angle)
+        inside = (along > 0) & (along < length) & (across > 0) & (across < depth)
+        walls = (along > -0.2) & (along < length + 0.2) & (across > -0.2) & (across < depth + 0.2) & ~inside
+        racks = inside & (along > 3) & (along < length - 3) & (across % 4.5 > 3)
+        picture[inside] = 254
+        picture[walls | racks] = 0
+    found = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=0.1).directions.angles
+    expected = np.radians([10.0, 100.0, 10.0 + turn, 100.0 + turn])
+    assert len(found) == 4
+    assert (apart(expected, found).min(axis=1) < np.radians(0.15)).all(), np.degrees(found)
+
+
 def test_angles_lie_between_minus_and_plus_a_right_angle() -> None:
     for name in ZOO:
         angles = zoo.surveyed(name).directions.angles

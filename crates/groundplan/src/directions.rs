@@ -30,6 +30,7 @@ const LOWEST_CANDIDATE: f64 = 0.04;
 const MOST_CANDIDATES: usize = 16;
 /// Where to look for what lines up by chance, degrees from a candidate.
 const CONTROLS_DEG: [f64; 6] = [-26.0, -19.0, -13.0, 13.0, 19.0, 26.0];
+const NONE_QUIET: [bool; CONTROLS_DEG.len()] = [false; CONTROLS_DEG.len()];
 /// A pixel speaks for a direction when it lies within this angle of it, degrees.
 const ALIGNED_DEG: f64 = 6.0;
 /// A direction has this many times as much lined up as chance has.
@@ -80,14 +81,7 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
             let (strong, weak): (Vec<_>, Vec<_>) =
                 found.into_iter().partition(|f| f.metres >= parameters.directions_min_weight * strongest);
             found = strong.into_iter().filter(|f| f.exceeds_chance(OTHERS_AMONG_CONTROLS)).collect();
-            // A ground plan has two directions, be it only by the ends of its racks.
-            if found.len() == 1 {
-                let first = found[0].angle;
-                let is_square = |f: &Candidate| FRAC_PI_2 - angle_between(f.angle, first) <= SQUARE.0.to_radians();
-                let share = |f: &Candidate| if is_square(f) { SQUARE.1 } else { SECOND };
-                let second = |f: &Candidate| f.metres >= share(f) * strongest && f.exceeds_chance(1);
-                found.extend(weak.into_iter().find(second));
-            }
+            found.extend(seconds(&weak, &found));
         }
     }
     let sum: f64 = found.iter().map(|f| f.metres).sum();
@@ -101,19 +95,52 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
 }
 
 /// A direction that may be one.
+#[derive(Clone, Copy)]
 struct Candidate {
     angle: f64,
     /// Metres of structure that line up along it.
     metres: f64,
-    /// At how many of the controls clearly less lines up: scattered pixels line up there as well as they do here.
-    quiet: usize,
+    /// At which of the controls clearly less lines up: scattered pixels line up there as well as they do here.
+    quiet: [bool; CONTROLS_DEG.len()],
 }
 
 impl Candidate {
     /// Clearly more lines up here than beside; so many of the controls may lie on other directions.
     fn exceeds_chance(&self, others: usize) -> bool {
-        self.quiet + others >= CONTROLS_DEG.len()
+        self.quiet.iter().filter(|quiet| !**quiet).count() <= others
     }
+
+    /// The same of a weak one: what lines up along strong ones and square to them tells nothing, of the rest one may.
+    fn exceeds_chance_beside(&self, strong: &[Candidate]) -> bool {
+        let near = ALIGNED_DEG.to_radians();
+        let is_known = |turn: f64| {
+            let beside = |f: &Candidate| angle_between(f.angle, self.angle + turn.to_radians());
+            strong.iter().map(beside).any(|by| by <= near || FRAC_PI_2 - by <= near)
+        };
+        CONTROLS_DEG.iter().zip(self.quiet).filter(|&(turn, quiet)| !quiet && !is_known(*turn)).count() <= 1
+    }
+}
+
+/// A ground plan has two directions, be it only by the ends of its racks, and so has each wing of it: of the weak ones
+/// those square to a strong one that has no such other. Beside a single one the second need not be square.
+fn seconds(weak: &[Candidate], strong: &[Candidate]) -> Vec<Candidate> {
+    let share = |f: &Candidate, to: &Candidate| match (is_square(f.angle, to, SQUARE.0), strong.len()) {
+        (true, _) => SQUARE.1,
+        (false, 1) => SECOND,
+        (false, _) => f64::INFINITY,
+    };
+    let is_its =
+        |f: &Candidate, to: &Candidate| f.metres >= share(f, to) * to.metres && f.exceeds_chance_beside(strong);
+    alone(strong).filter_map(|to| weak.iter().copied().find(|f| is_its(f, to))).collect()
+}
+
+/// Those that have no other square to them.
+fn alone(strong: &[Candidate]) -> impl Iterator<Item = &Candidate> {
+    strong.iter().filter(|f| !strong.iter().any(|other| is_square(other.angle, f, SQUARE.0)))
+}
+
+fn is_square(angle: f64, to: &Candidate, within_deg: f64) -> bool {
+    FRAC_PI_2 - angle_between(angle, to.angle) <= within_deg.to_radians()
 }
 
 /// How much lines up along the directions that are given, degrees in the map frame; each once.
@@ -129,7 +156,7 @@ fn measure(
         if found.iter().all(|other| angle_between(other.angle, angle) > CLOSEST) {
             let lines = aligned(frame, rest, angle, threads);
             take(rest, angle, &lines, parameters);
-            found.push(Candidate { angle, metres: lines.metres, quiet: 0 });
+            found.push(Candidate { angle, metres: lines.metres, quiet: NONE_QUIET });
         }
     }
     found
@@ -150,7 +177,7 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
             break;
         };
         tried.push(start);
-        let [useful, perhaps] = [&found[..], &[]].map(|found| least(found, strongest, parameters) * strongest);
+        let [useful, perhaps] = [&found[..], &[]].map(|found| least(found, strongest, start, parameters));
         let most = most(frame, rest, start, ALIGNED_DEG + SCAN_DEG);
         if most < useful {
             continue;
@@ -174,7 +201,7 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
             if found.iter().any(|other| !is_far(other, angle, separation) && other.metres >= metres) {
                 continue;
             }
-            let quiet = if metres >= useful { quiet(frame, rest, angle, metres, threads) } else { 0 };
+            let quiet = if metres >= useful { quiet(frame, rest, angle, metres, threads) } else { NONE_QUIET };
             strongest = strongest.max(metres);
             take(rest, angle, &lines, parameters);
             found.retain(|other| is_far(other, angle, separation));
@@ -185,15 +212,20 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
     found
 }
 
-/// Beside those that were found, what is less than this share of the strongest is of no use.
-fn least(found: &[Candidate], strongest: f64, parameters: &Parameters) -> f64 {
+/// Beside those that were found, what is less than so many metres about an angle is of no use.
+fn least(found: &[Candidate], strongest: f64, angle: f64, parameters: &Parameters) -> f64 {
     let weight = parameters.directions_min_weight;
     if parameters.directions_count.is_some() {
         return 0.0;
     }
-    // Of the weak ones only a second is taken.
-    let strong = found.iter().filter(|f| f.metres >= weight * strongest && f.exceeds_chance(OTHERS_AMONG_CONTROLS));
-    if strong.count() < 2 { weight.min(SQUARE.1) } else { weight }
+    let is_strong = |f: &&Candidate| f.metres >= weight * strongest && f.exceeds_chance(OTHERS_AMONG_CONTROLS);
+    let strong: Vec<Candidate> = found.iter().filter(is_strong).copied().collect();
+    if strong.len() < 2 {
+        return weight.min(SQUARE.1) * strongest;
+    }
+    // Of the weak ones only what is square to one that has no other is taken.
+    let near = |f: &&Candidate| is_square(angle, f, ALIGNED_DEG);
+    alone(&strong).filter(near).map(|f| SQUARE.1 * f.metres).fold(weight * strongest, f64::min)
 }
 
 /// No less than lines up along an angle, by how many pixels lie along it.
@@ -201,14 +233,13 @@ fn most(frame: &Frame, rest: &Oriented, angle: f64, tolerance_deg: f64) -> f64 {
     rest.at_most_along(angle, tolerance_deg.to_radians()) as f64 * frame.resolution * std::f64::consts::SQRT_2
 }
 
-/// At how many of the controls around an angle clearly less lines up than there.
-fn quiet(frame: &Frame, rest: &Oriented, angle: f64, metres: f64, threads: usize) -> usize {
-    let is_quiet = |turn: &f64| {
+/// At which of the controls around an angle clearly less lines up than there.
+fn quiet(frame: &Frame, rest: &Oriented, angle: f64, metres: f64, threads: usize) -> [bool; CONTROLS_DEG.len()] {
+    CONTROLS_DEG.map(|turn| {
         let beside = angle + turn.to_radians();
         metres > CONTRAST * most(frame, rest, beside, ALIGNED_DEG)
             || metres > CONTRAST * aligned(frame, rest, beside, threads).metres
-    };
-    CONTROLS_DEG.iter().filter(|turn| is_quiet(turn)).count()
+    })
 }
 
 /// The histogram over the angle in the map frame.
