@@ -79,4 +79,7 @@ def test_racks_that_face_one_another_for_less_than_twice_their_distance_have_an_
 ) -> None:
     (aisle,) = groundplan.survey(racks_past_one_another(apart, past), resolution=RESOLUTION).of_kind("corridor")
     assert abs(np.subtract(*aisle["axis"])[0]) > 18.0
-    assert 20.0 - apart * RESOLUTION < aisle["axis"][0][1] < 20.0
+    # From the face of the one to that of the other, and its axis half way between.
+    assert aisle["width"] == pytest.approx(apart * RESOLUTION, abs=0.3)
+    assert aisle["axis"][0][1] == pytest.approx(20.0 - apart * RESOLUTION / 2, abs=0.2)
+    assert aisle["confidence"] > 0.8

@@ -2,7 +2,8 @@
 //!
 //! A strip is asked column by column for its clear extent. Where that is all of the strip, and ends on both sides
 //! within a share of its width beyond, the column speaks for a way along it, wherever in there the side may stand. A
-//! long way that nothing narrows needs no more of a side than machines or pallets in a row, with gaps between them.
+//! long way that nothing narrows needs no more of a side than machines or pallets in a row, with gaps between them. What
+//! is found is as wide as next to nothing stands along it.
 
 use super::beside::Beside;
 use super::corridors::{self, Strip, UNTOLD};
@@ -50,6 +51,8 @@ const BAY: f64 = pieces::BAY_WIDTH.1;
 const LEAST_BOTH_BAY: f64 = 0.8;
 /// A way that shares more than this of its width with a known one is none.
 const SHARED: f64 = 0.25;
+/// What lies beside a way is of it where no more than this share of it is not free.
+const REACHED: f64 = 0.05;
 /// What a column says for a way, or against it: it is clear between two sides; it is narrowed; it has one side; it has
 /// none; something stands in the way, or narrows one with thin sides.
 const FULL: i64 = 10;
@@ -146,7 +149,9 @@ pub fn find(
             ways.into_iter().filter(|way| way.along[0] < candidate.along[1] && candidate.along[0] < way.along[1]),
         );
     }
-    (all.split_off(known.len()), over)
+    let whole = |way: Strip| Strip { across: widened(view, &way, parameters.labels_max_width), ..way };
+    let ways = all.split_off(known.len()).into_iter().map(whole).collect();
+    (ways, over.into_iter().map(whole).collect())
 }
 
 /// A way in little room: of a large map there are millions, of which few stay.
@@ -356,6 +361,27 @@ impl<'a> Candidate<'a> {
             && !barriers::doors(view, sides, on_map.clone()).contains(&true)
             && barriers::stops(view, self.across, on_map).is_empty()
     }
+}
+
+/// From side to side of a way: with all beside it along which next to nothing stands, no farther than its sides may stand
+/// and no wider than that.
+fn widened(view: &Turned, way: &Strip, widest: f64) -> [f64; 2] {
+    let columns = view.column(way.along[0])..view.column(way.along[1]);
+    let [below, above] = beyond(way.across);
+    let is_clear = |low: f64| view.mean_blocked(columns.clone(), low, low + view.cell) <= REACHED;
+    let [mut low, mut high] = way.across;
+    let (mut down, mut up) = (true, true);
+    while (down || up) && high - low + view.cell <= widest {
+        down = down && low - view.cell >= below[0] && is_clear(low - view.cell);
+        if down {
+            low -= view.cell;
+        }
+        up = up && high + view.cell <= above[1] && is_clear(high);
+        if up {
+            high += view.cell;
+        }
+    }
+    [low, high]
 }
 
 /// How far beyond a strip's borders its sides may stand, metres.
