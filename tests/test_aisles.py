@@ -275,6 +275,21 @@ def test_aisles_are_not_led_on_through_the_rows_that_stand_beyond_their_ends(sha
     assert len(ends) == 2 and all(end == pytest.approx(-2.4, abs=0.5) for _, end in ends)
 
 
+def between_rays(share: float) -> npt.NDArray[np.uint8]:
+    """A way of 12 m by 2 m between walls at 1 cm a pixel, of whose floor no more than that share was hit by rays."""
+    picture = np.full((260, 1260), 205, np.uint8)
+    picture[24:236, 30:1230] = 0
+    picture[30:230, 30:1230] = np.where(np.random.default_rng(1).random((200, 1200)) < share, 254, 205)
+    return picture
+
+
+@pytest.mark.parametrize("share", [0.3, 0.5])
+def test_the_floor_between_rays_is_floor_where_pixels_are_finer_than_they_are_dense(share: float) -> None:
+    (aisle,) = groundplan.survey(between_rays(share), resolution=0.01).of_kind("corridor")
+    assert np.hypot(*np.subtract(*aisle["axis"])) == pytest.approx(12.0, abs=0.3)
+    assert aisle["width"] == pytest.approx(2.0, abs=0.15)
+
+
 def test_what_lies_beside_an_aisle_nearly_along_it_does_not_cross_it(shared: Path) -> None:
     survey = groundplan.survey(groundplan.read(shared / "maps" / "rbk_warehouse.yaml"))
     ways = [np.subtract(*label["axis"]) for label in survey.of_kind("corridor")]

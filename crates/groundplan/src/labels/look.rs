@@ -124,6 +124,14 @@ impl<'a> Look<'a> {
     }
 }
 
+/// In a row of cells of so many samples, each of several pixels of which some are not asked: what lies between rays is
+/// floor, where they went through a cell and through those before and behind it.
+pub fn between_rays(row: &mut [u8], samples: u8) {
+    let through: Vec<bool> = row.iter().map(|cell| *cell < samples).collect();
+    let inner = row.iter_mut().skip(1).zip(through.windows(3));
+    inner.filter(|(_, near)| !near.contains(&false)).for_each(|(cell, _)| *cell = 0);
+}
+
 /// Where a lane's sample lies.
 fn after(start: [i64; 2], step: [i64; 2], samples: usize) -> [i64; 2] {
     [0, 1].map(|axis| start[axis] + samples as i64 * step[axis])

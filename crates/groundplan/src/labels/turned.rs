@@ -3,7 +3,7 @@
 
 use super::Evidence;
 use super::grounds::Grounds;
-use super::look::{LANES, Look};
+use super::look::{LANES, Look, between_rays};
 use super::patches::Patches;
 use super::racks::Row;
 use super::recall::Key;
@@ -159,6 +159,7 @@ impl Turned {
         let samples = self.samples as usize;
         let frame = &evidence.grid.frame;
         let sample = self.cell / samples as f64;
+        let is_fine = sample > 1.1 * frame.resolution;
         // On the grid, in pixels: the first sample, and the steps to the next one along and across.
         let at = |u: f64, v: f64| frame.to_pixels(self.to_map([self.start[0] + u, self.start[1] + v]));
         let (origin, along, across) = (at(0.0, 0.0), at(sample, 0.0), at(0.0, sample));
@@ -168,6 +169,9 @@ impl Turned {
         let make = |n: usize, first: usize, row: &mut [u8]| {
             let lanes: [[f64; 2]; LANES] = std::array::from_fn(|j| lane(n * samples + j));
             look.cells(&lanes[..samples], steps[0], first, row);
+            if is_fine {
+                between_rays(row, self.samples.pow(2) as u8);
+            }
             self.take(n, first, row);
         };
         let patches = evidence.recall.patches(evidence.grid, evidence.threads);
