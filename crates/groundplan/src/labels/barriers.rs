@@ -3,6 +3,7 @@
 use super::runs::runs;
 use super::shares::Shares;
 use super::turned::Turned;
+use crate::bits::Bits;
 use std::ops::Range;
 
 /// Such a wall bars more than this share of the strip.
@@ -40,21 +41,21 @@ impl<'a> Within<'a> {
     }
 
     /// The columns in which a wall no thicker than that bars more than this share, and leaves no more than a door.
-    fn walls(&self, view: &Turned, share: f64, thickest: f64) -> Vec<bool> {
+    fn walls(&self, view: &Turned, share: f64, thickest: f64) -> Bits {
         let least = self.barred.least(|barred| barred > share && (1.0 - barred) * self.width <= DOOR);
-        thin(view, thickest, self.counts.iter().map(|count| *count >= least).collect())
+        thin(view, thickest, &Bits::of(&self.counts, |count| *count >= least), self.counts.len())
     }
 }
 
-/// The columns of a strip in which such a wall stands.
-pub fn across(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
+/// The columns of a strip in which such a wall stands; the first of them is the first bit.
+pub fn across(view: &Turned, across: [f64; 2], range: Range<usize>) -> Bits {
     Within::new(view, across, range).walls(view, BARRED, THICK)
 }
 
 /// The columns in which such a wall stands on both sides of a strip, which leads through a door in it.
-pub fn doors(view: &Turned, sides: [[f64; 2]; 2], range: Range<usize>) -> Vec<bool> {
+pub fn doors(view: &Turned, sides: [[f64; 2]; 2], range: Range<usize>) -> Bits {
     let [one, two] = sides.map(|[low, high]| view.barred_where(range.clone(), low, high, |barred| barred > BESIDE));
-    thin(view, THICK, one.into_iter().zip(two).map(|(one, two)| one && two).collect())
+    thin(view, THICK, &(&one & &two), range.len())
 }
 
 /// Columns of what is so thick, metres.
@@ -62,27 +63,24 @@ fn columns(view: &Turned, thick: f64) -> usize {
     (thick / view.cell).ceil() as usize
 }
 
-/// Flags without runs that are thicker than so much, metres.
-fn thin(view: &Turned, thickest: f64, mut flags: Vec<bool>) -> Vec<bool> {
+/// So many columns without runs of them that are thicker than so much, metres.
+fn thin(view: &Turned, thickest: f64, thick: &Bits, count: usize) -> Bits {
     let longest = columns(view, thickest);
-    for (from, to) in runs(&flags, true) {
-        if to - from > longest {
-            flags[from..to].fill(false);
-        }
-    }
-    flags
+    let mut thin = Bits::new(count);
+    thick.runs(0..count, true).filter(|run| run.len() <= longest).for_each(|run| thin.fill(run));
+    thin
 }
 
 /// [`across`] of some columns, and walls between docks, as they are among all.
-pub fn among(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<bool> {
+pub fn among(view: &Turned, across: [f64; 2], range: Range<usize>) -> Bits {
     // What is thicker beyond the range is no wall within it.
     let more = columns(view, THICK) + 1;
     let wider = range.start.saturating_sub(more)..(range.end + more).min(view.size[0]);
     let first = range.start - wider.start;
     let within = Within::new(view, across, wider);
-    let docks = within.walls(view, DOCK.max(LONG / within.width.max(view.cell)), THIN);
-    let walls = within.walls(view, BARRED, THICK).into_iter().zip(docks).map(|(wall, dock)| wall || dock);
-    walls.skip(first).take(range.len()).collect()
+    let mut walls = within.walls(view, BARRED, THICK);
+    walls |= &within.walls(view, DOCK.max(LONG / within.width.max(view.cell)), THIN);
+    walls.part(first..first + range.len())
 }
 
 /// Where a square of a share of the strip's width, which never turns back, gets no further along it: a wall askew to
@@ -95,18 +93,18 @@ pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize>
     let place = |n: usize| first + n as f64 * view.cell;
     let mut found = Vec::new();
     // Mostly nothing stands there.
-    if !view.barred_where(range.clone(), place(0), place(count), |barred| barred > 0.0).contains(&true) {
+    if !view.barred_where(range.clone(), place(0), place(count), |barred| barred > 0.0).any() {
         return found;
     }
     // For how many columns each place across has been free.
     let mut free_for = vec![side; count];
     let mut reached = vec![true; count];
     let row = |n: usize| view.barred_where(range.clone(), place(n), place(n) + view.cell, |barred| barred > 0.0);
-    let barred: Vec<Vec<bool>> = (0..count).map(row).collect();
+    let barred: Vec<Bits> = (0..count).map(row).collect();
     let from = range.start;
     for c in range {
         for (columns, barred) in free_for.iter_mut().zip(&barred) {
-            *columns = if barred[c - from] { 0 } else { *columns + 1 };
+            *columns = if barred.get(c - from) { 0 } else { *columns + 1 };
         }
         let free: Vec<bool> = free_for.iter().map(|columns| *columns >= side).collect();
         let mut next = vec![false; count];

@@ -84,8 +84,9 @@ fn up_to_walls(views: &[Turned], strips: &[Strip], placed: &[Beside], widest: f6
         let column = view.column(end);
         let beyond =
             if side == 0 { column.saturating_sub(most)..column } else { column..(column + most).min(view.size[0]) };
+        let count = beyond.len();
         let closed = view.some_closed(beyond, low, high);
-        let free = if side == 0 { closed.iter().rev().position(|c| *c) } else { closed.iter().position(|c| *c) };
+        let free = (0..count).find(|&n| closed.get(if side == 0 { count - 1 - n } else { n }));
         if let Some(free) = free {
             let by = free as f64 * view.cell;
             reaching.along[side] += if side == 0 { -by } else { by };

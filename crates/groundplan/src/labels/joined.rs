@@ -86,7 +86,7 @@ fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], least: f64, [a,
     let [from, to] = between.map(|u| view.column(u));
     let columns = from.saturating_sub(1)..to + 1;
     view.mean_blocked(columns.clone(), low + margin, high - margin) <= CLUTTER
-        && !view.some_closed(columns.clone(), low + margin, high - margin).contains(&true)
-        && !barriers::among(view, [low, high], columns.clone()).contains(&true)
+        && !view.some_closed(columns.clone(), low + margin, high - margin).any()
+        && !barriers::among(view, [low, high], columns.clone()).any()
         && barriers::stops(view, [low, high], columns).is_empty()
 }

@@ -230,13 +230,13 @@ fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meeting>
         };
         let columns = view.column(from)..view.column(to) + 1;
         let [low, high] = inner(strip);
-        if view.some_closed(columns.clone(), low, high).contains(&true) {
+        if view.some_closed(columns.clone(), low, high).any() {
             return None;
         }
         let sides = [strip.across[0] + SIDE, strip.across[1] - SIDE];
         let blocked = view.some_blocked(columns.clone(), sides[0], sides[1]);
         legs[n].is_clear = from == to || blocked.into_iter().all(|blocked| blocked <= CLUTTER);
-        let has_door = barriers::across(view, strip.across, columns.clone()).contains(&true);
+        let has_door = barriers::across(view, strip.across, columns.clone()).any();
         if has_door || !barriers::stops(view, strip.across, columns).is_empty() {
             return None;
         }
@@ -297,7 +297,7 @@ pub fn is_shut(views: &[Turned], strip: &Strip, side: usize) -> bool {
     let view = &views[strip.direction];
     let end = strip.along[side];
     let [from, to] = [end - SHUT, end + SHUT].map(|u| view.column(u));
-    closed(view, strip, side, SHUT).is_some() || barriers::across(view, strip.across, from..to + 1).contains(&true)
+    closed(view, strip, side, SHUT).is_some() || barriers::across(view, strip.across, from..to + 1).any()
 }
 
 /// A strip without what stands at its sides, across.

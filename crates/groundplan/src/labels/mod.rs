@@ -40,6 +40,7 @@ mod shares;
 mod sided;
 mod sketch;
 mod squares;
+mod stretches;
 mod strips;
 mod summed;
 mod sums;

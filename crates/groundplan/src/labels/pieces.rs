@@ -6,6 +6,7 @@ use super::corridors::Strip;
 use super::family::Family;
 use super::runs::{best_pieces, runs};
 use super::turned::{BARRED, IMPASSABLE};
+use crate::bits::WORD;
 use std::ops::Range;
 
 /// Lines this near to a strip's side belong to it, metres.
@@ -65,23 +66,37 @@ impl Family<'_> {
         let beyond = [[across[0] - BESIDE.1, across[0] - BESIDE.0], [across[1] + BESIDE.0, across[1] + BESIDE.1]];
         let view = self.view;
         let within = [across[0] + margin, across[1] - margin];
+        let first = range.start;
         let blocked = view.some_blocked(range.clone(), within[0], within[1]);
         let barred = view.barred_where(range.clone(), within[0], within[1], |barred| barred > BARRED);
         let beyond = beyond.map(|[low, high]| view.blocked_where(range.clone(), low, high, |share| share > BEYOND));
-        let first = range.start;
-        let holds = |n: usize, c: usize| sides[n].walls.get(c) || beyond[n][c - first];
         let barriers = barriers::among(view, across, range.clone());
-        range
-            .map(|c| Column {
-                blocked: blocked[c - first],
-                closed: blocked[c - first] > IMPASSABLE || barred[c - first] || barriers[c - first],
-                parted: parts.iter().any(|part| part.faces.get(c)),
-                walled: holds(0, c) && holds(1, c),
-                near: sides.iter().any(|side| side.near.get(c)),
-                faces: sides.map(|side| side.faces.get(c)),
-                held: [0, 1].map(|n| beyond[n][c - first] || sides[n].mouths.get(c)),
-            })
-            .collect()
+        let mut columns = Vec::with_capacity(range.len());
+        for (from, blocked) in range.step_by(WORD).zip(blocked.chunks(WORD)) {
+            // Many columns at a time, a bit for each.
+            let place = from - first;
+            let closed = barred.word(place) | barriers.word(place);
+            let parted = parts.iter().fold(0, |parted, part| parted | part.faces.word(from));
+            let beyond = beyond.each_ref().map(|beyond| beyond.word(place));
+            let walls = sides.map(|side| side.walls.word(from));
+            let near = sides.map(|side| side.near.word(from));
+            let faces = sides.map(|side| side.faces.word(from));
+            let mouths = sides.map(|side| side.mouths.word(from));
+            let walled = (walls[0] | beyond[0]) & (walls[1] | beyond[1]);
+            columns.extend(blocked.iter().enumerate().map(|(n, &blocked)| {
+                let is = |word: u64| word >> n & 1 == 1;
+                Column {
+                    blocked,
+                    closed: blocked > IMPASSABLE || is(closed),
+                    parted: is(parted),
+                    walled: is(walled),
+                    near: is(near[0] | near[1]),
+                    faces: faces.map(is),
+                    held: [0, 1].map(|n| is(beyond[n] | mouths[n])),
+                }
+            }));
+        }
+        columns
     }
 
     /// The corridors among a strip's columns, of which the first is given: the pieces in which what speaks for a

@@ -7,9 +7,9 @@
 use super::corridors::Strip;
 use super::patches::{Area, Patches};
 use super::period::Period;
-use super::ragged::Held;
 use super::rooms::{Bar, Width};
 use super::squares::Band;
+use super::stretches::Held;
 use super::sums::Told;
 use crate::bits::{Bits, WORD, lowest};
 use crate::grid::Grid;

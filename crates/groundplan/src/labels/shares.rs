@@ -1,6 +1,7 @@
 //! What a strip's columns are asked: how many of their samples something is true of, and where that is so much.
 
 use super::sums::Rows;
+use crate::bits::Bits;
 use std::ops::Range;
 
 /// Of how many samples of each column something is true.
@@ -53,8 +54,8 @@ impl Shares<'_> {
         self.rows.over(columns)
     }
 
-    /// Which of a range of columns have so many.
-    pub fn reached(&self, columns: Range<usize>, least: u32) -> Vec<bool> {
+    /// Which of a range of columns have so many; the first of them is the first bit.
+    pub fn reached(&self, columns: Range<usize>, least: u32) -> Bits {
         self.rows.reached(columns, least)
     }
 

@@ -15,6 +15,6 @@ pub fn is_sided(view: &Turned, strip: &Strip) -> bool {
     let (within, beyond) = (SIDE.0 * strip.width(), SIDE.1 * strip.width());
     [[low - beyond, low + within], [high - within, high + beyond]].into_iter().all(|[low, high]| {
         let held = view.blocked_where(columns.clone(), low, high, |share| share > 0.0);
-        held.iter().filter(|held| **held).count() as f64 >= SIDED * columns.len() as f64
+        held.count(0..columns.len()) as f64 >= SIDED * columns.len() as f64
     })
 }

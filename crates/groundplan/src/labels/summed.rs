@@ -1,6 +1,7 @@
 //! The cells of a view as sums of all rows before: of any rows the sums are one row less another.
 
 use super::sums::{Told, What, barred};
+use crate::bits::{Bits, WORD, word_where};
 use std::ops::Range;
 
 /// So many sums are compared together.
@@ -171,22 +172,30 @@ impl SummedRows<'_> {
     }
 
     /// Which of some columns have a sum as large as that.
-    pub fn reached(&self, columns: &Range<usize>, least: u32) -> Vec<bool> {
-        let Ok(least) = u16::try_from(least) else { return vec![false; columns.len()] };
-        self.each(columns, |sum| sum >= least)
+    pub fn reached(&self, columns: &Range<usize>, least: u32) -> Bits {
+        let mut reached = Bits::new(columns.len());
+        let Ok(least) = u16::try_from(least) else { return reached };
+        let [before, seen, after] = self.split(columns);
+        let place = |column: usize| column - columns.start;
+        if self.beyond >= least {
+            for beside in [before, after] {
+                reached.fill(place(beside.start)..place(beside.end));
+            }
+        }
+        for from in seen.clone().step_by(WORD) {
+            let some = from..seen.end.min(from + WORD);
+            reached.add(place(from), word_where(self.sums(&some).map(|sum| sum >= least)));
+        }
+        reached
     }
 
     /// The sums over them of some columns.
     pub fn over(&self, columns: &Range<usize>) -> Vec<u32> {
-        self.each(columns, u32::from)
-    }
-
-    fn each<T: Clone>(&self, columns: &Range<usize>, of: impl Fn(u16) -> T) -> Vec<T> {
         let [before, seen, after] = self.split(columns);
         let mut all = Vec::with_capacity(columns.len());
-        all.resize(before.len(), of(self.beyond));
-        all.extend(self.sums(&seen).map(&of));
-        all.resize(all.len() + after.len(), of(self.beyond));
+        all.resize(before.len(), self.beyond.into());
+        all.extend(self.sums(&seen).map(u32::from));
+        all.resize(all.len() + after.len(), self.beyond.into());
         all
     }
 
@@ -236,7 +245,10 @@ mod tests {
                     let columns = start..end;
                     assert_eq!(all.over(&columns), some.over(&columns));
                     for least in [0, 1, 5, 12, 24, 80, 100_000] {
-                        assert_eq!(all.reached(&columns, least), some.reached(&columns, least));
+                        let [all, some] = [&all, &some].map(|rows| rows.reached(&columns, least));
+                        assert!((0..columns.len()).all(|n| all.get(n) == some.get(n)));
+                    }
+                    for least in [0, 1, 5, 12, 24, 80, 100_000] {
                         assert_eq!(all.first(columns.clone(), least), some.first(columns.clone(), least));
                         assert_eq!(all.last(columns.clone(), least), some.last(columns.clone(), least));
                     }

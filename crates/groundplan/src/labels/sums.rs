@@ -8,6 +8,7 @@ use super::recall::{Key, Recall};
 use super::squares::{self, Band, SquaredRows};
 use super::summed::{Part, Summed, SummedRows};
 use crate::bands::map_bands;
+use crate::bits::Bits;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -174,11 +175,11 @@ impl Rows<'_> {
         }
     }
 
-    /// Which of some columns have a sum as large as that.
-    pub fn reached(&self, columns: Range<usize>, least: u32) -> Vec<bool> {
+    /// Which of some columns have a sum as large as that; the first of them is the first bit.
+    pub fn reached(&self, columns: Range<usize>, least: u32) -> Bits {
         match self {
             Self::Summed(rows) => rows.reached(&columns, least),
-            Self::Squared(rows) => rows.over(&columns).into_iter().map(|sum| sum >= least).collect(),
+            Self::Squared(rows) => Bits::of(&rows.over(&columns), |sum| *sum >= least),
         }
     }
 

@@ -392,22 +392,22 @@ impl Turned {
         self.shares(What::Occupied, columns, low, high)
     }
 
-    /// [`Turned::is_closed`] of a range of columns.
-    pub fn some_closed(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<bool> {
+    /// [`Turned::is_closed`] of a range of columns, the first of which is the first bit.
+    pub fn some_closed(&self, columns: Range<usize>, low: f64, high: f64) -> Bits {
         let mut closed = self.blocked_where(columns.clone(), low, high, |blocked| blocked > IMPASSABLE);
-        let barred = self.barred_where(columns, low, high, |barred| barred > BARRED);
-        closed.iter_mut().zip(barred).for_each(|(closed, barred)| *closed |= barred);
+        closed |= &self.barred_where(columns, low, high, |barred| barred > BARRED);
         closed
     }
 
-    /// In which of a range of columns [`Turned::blocked`] is as much as is asked for, which all that is more is too.
-    pub fn blocked_where(&self, columns: Range<usize>, low: f64, high: f64, is: impl Fn(f64) -> bool) -> Vec<bool> {
+    /// In which of a range of columns, the first of which is the first bit, [`Turned::blocked`] is as much as is asked
+    /// for, which all that is more is too.
+    pub fn blocked_where(&self, columns: Range<usize>, low: f64, high: f64, is: impl Fn(f64) -> bool) -> Bits {
         let of = self.blocked_in(low, high);
         of.reached(columns, of.least(is))
     }
 
     /// The same of [`Turned::barred`].
-    pub fn barred_where(&self, columns: Range<usize>, low: f64, high: f64, is: impl Fn(f64) -> bool) -> Vec<bool> {
+    pub fn barred_where(&self, columns: Range<usize>, low: f64, high: f64, is: impl Fn(f64) -> bool) -> Bits {
         let of = self.barred_in(low, high);
         of.reached(columns, of.least(is))
     }

@@ -1,0 +1,258 @@
+//! Ways along a strip whose sides are no lines.
+//!
+//! A strip is asked column by column for its clear extent. Where that is all of the strip, and ends on both sides
+//! within a share of its width beyond, the column speaks for a way along it, wherever in there the side may stand. A
+//! long way that nothing narrows needs no more of a side than machines or pallets in a row, with gaps between them.
+
+use super::barriers;
+use super::corridors::{Strip, UNTOLD};
+use super::runs::best_pieces;
+use super::shares::Shares;
+use super::turned::{IMPASSABLE, Turned};
+use crate::bits::Bits;
+use std::cell::OnceCell;
+use std::ops::Range;
+
+/// A side may stand this far beyond the strip's border, in widths, metres at least.
+const DEPTH: (f64, f64) = (0.8, 1.0);
+/// Over so much of that depth something is not free.
+const HELD: f64 = 0.3;
+/// A column is clear up to this share, and in the way from that one on.
+const CLEAR: f64 = 0.1;
+const CLUTTERED: f64 = 0.35;
+/// Gaps up to this long in a thin side are no gaps, metres.
+const GAP: f64 = 1.4;
+/// A way is at least so long, metres, and so many times as long as wide: less is a room. The same with thin sides.
+const LONG: (f64, f64) = (7.0, 4.2);
+const VERY_LONG: (f64, f64) = (10.0, 5.0);
+/// Least shares of its columns that are clear (and that are where the sides are thin), that hold on each side and on
+/// both, and on which something seen stands there.
+const LEAST_CLEAR: f64 = 0.75;
+const LEAST_CLEAR_THIN: f64 = 0.95;
+const LEAST_HELD: f64 = 0.5;
+const LEAST_BOTH: f64 = 0.45;
+const LEAST_SEEN: f64 = 0.3;
+/// Least share of a thin side on which structure lies along the way.
+const LEAST_FACED: f64 = 0.2;
+/// What may lie over empty bays, from row to row, is held on both sides over so much of it.
+const LEAST_BOTH_BAY: f64 = 0.8;
+/// What a column says for a way, or against it: it is clear between two sides; it is narrowed; it has one side; it has
+/// none; something stands in the way, or narrows one with thin sides.
+const FULL: i64 = 10;
+const NARROWED: i64 = 2;
+const ONE_SIDED: i64 = 1;
+const OPEN: i64 = 7;
+const BLOCKED: i64 = 20;
+
+/// What holds a side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Held {
+    /// Much of what lies beyond the strip's border is not free.
+    Deep,
+    /// Something stands there, now and then.
+    Thin,
+}
+
+impl Held {
+    /// The shortest way of a width with such sides, metres.
+    fn shortest(self, width: f64) -> f64 {
+        let (shortest, long) = if self == Self::Thin { VERY_LONG } else { LONG };
+        shortest.max(long * width)
+    }
+
+    /// Least share of a way's columns that are clear.
+    fn least_clear(self) -> f64 {
+        if self == Self::Thin { LEAST_CLEAR_THIN } else { LEAST_CLEAR }
+    }
+}
+
+/// A strip, asked column by column.
+pub struct Candidate<'a> {
+    view: &'a Turned,
+    across: [f64; 2],
+    /// It may be a row of empty bays.
+    bay: bool,
+    blocked: Shares<'a>,
+    /// Of blocked samples, the least for which nothing gets through.
+    closed: u32,
+}
+
+/// Columns of a strip one after another that are not closed, a bit for each: what is asked of them whatever holds the
+/// sides is asked once.
+struct Stretch {
+    columns: Range<usize>,
+    unclear: Bits,
+    /// Beyond which side much is not free.
+    deep: [OnceCell<Bits>; 2],
+}
+
+impl Stretch {
+    fn all(&self) -> Range<usize> {
+        0..self.columns.len()
+    }
+}
+
+/// What the columns of a stretch are to a way along the strip.
+struct Columns {
+    held: [Bits; 2],
+    both: Bits,
+    scores: Vec<i64>,
+}
+
+impl<'a> Candidate<'a> {
+    /// What is no wider than `bay`, metres, may be a row of them.
+    pub fn new(view: &'a Turned, across: [f64; 2], bay: f64) -> Self {
+        let blocked = view.blocked_in(across[0], across[1]);
+        let closed = blocked.least(|share| share > IMPASSABLE);
+        Self { view, across, bay: across[1] - across[0] <= bay, closed, blocked }
+    }
+
+    /// What the columns of a stretch are, where so many of them may be a way.
+    fn columns(&self, stretch: &Stretch, by: Held, least: usize) -> Option<Columns> {
+        let all = stretch.all();
+        let enough = |count: usize, share: f64| count as f64 >= share * least as f64;
+        if !enough(all.len() - stretch.unclear.count(all.clone()), by.least_clear()) {
+            return None;
+        }
+        let low = self.held(stretch, by, 0);
+        if !enough(low.count(all.clone()), LEAST_HELD) {
+            return None;
+        }
+        let held = [low, self.held(stretch, by, 1)];
+        let both = &held[0] & &held[1];
+        if !enough(both.count(all.clone()), LEAST_BOTH) {
+            return None;
+        }
+        let cluttered = self.blocked.least(|share| share > CLUTTERED);
+        let cluttered = self.blocked.reached(stretch.columns.clone(), cluttered);
+        let score = |n: usize| match (!stretch.unclear.get(n), [held[0].get(n), held[1].get(n)]) {
+            _ if cluttered.get(n) => -BLOCKED,
+            (false, _) if by == Held::Thin => -BLOCKED,
+            (true, [true, true]) => FULL,
+            (false, [true, true]) => NARROWED,
+            (_, [false, false]) => -OPEN,
+            _ => ONE_SIDED,
+        };
+        let scores = all.map(score).collect();
+        Some(Columns { held, both, scores })
+    }
+
+    /// In which columns of a stretch a side holds.
+    fn held(&self, stretch: &Stretch, by: Held, side: usize) -> Bits {
+        let [low, high] = beyond(self.across)[side];
+        let columns = || stretch.columns.clone();
+        let deep = || self.view.blocked_where(columns(), low, high, |share| share >= HELD);
+        let mut held = stretch.deep[side].get_or_init(deep).clone();
+        if by == Held::Thin {
+            held |= &self.view.occupied_in(low, high).reached(columns(), 1);
+            held.close(stretch.all(), (GAP / self.view.cell) as usize);
+        }
+        held
+    }
+
+    /// The columns around a way along it up to where it is closed: beyond nothing bears on what lies there.
+    pub fn around(&self, way: &Strip) -> Range<usize> {
+        let [first, last] = way.along.map(|u| self.view.column(u));
+        let from = self.blocked.last(0..first, self.closed).map_or(0, |c| c + 1);
+        from..self.blocked.first(last..self.view.size[0], self.closed).unwrap_or(self.view.size[0])
+    }
+
+    /// Columns of the shortest way along it.
+    fn least(&self, by: Held) -> usize {
+        ((by.shortest(self.across[1] - self.across[0]) / self.view.cell) as usize).max(1)
+    }
+
+    /// The ways along it, those with deep sides first, if such are asked for.
+    pub fn ways(&self, deep: Option<Held>) -> Vec<(Strip, Held)> {
+        // Where a short way fits, a long one may.
+        let kinds = deep.into_iter().chain([Held::Thin]);
+        let least = kinds.clone().map(|by| self.least(by)).min().unwrap_or(1);
+        let stretches = self.stretches(0..self.view.size[0], least, &[]);
+        kinds.flat_map(|by| self.ways_in(by, &stretches).into_iter().map(move |way| (way, by))).collect()
+    }
+
+    /// The ways along it that rivals leave, among some columns.
+    pub fn ways_left(&self, by: Held, within: Range<usize>, rivals: &[&Strip]) -> Vec<Strip> {
+        let view = self.view;
+        let rivals: Vec<Range<usize>> =
+            rivals.iter().map(|rival| view.column(rival.along[0])..view.column(rival.along[1]) + 1).collect();
+        self.ways_in(by, &self.stretches(within, self.least(by), &rivals))
+    }
+
+    /// The stretches of so many columns at least that are not closed, among some columns.
+    fn stretches(&self, within: Range<usize>, least: usize, rivals: &[Range<usize>]) -> Vec<Stretch> {
+        let open = self.blocked.open(within, least, self.closed, rivals);
+        let unclear = self.blocked.least(|share| share > CLEAR);
+        let stretch = |columns: Range<usize>| {
+            let unclear = self.blocked.reached(columns.clone(), unclear);
+            Stretch { columns, unclear, deep: Default::default() }
+        };
+        open.into_iter().map(stretch).collect()
+    }
+
+    /// The ways along it in stretches that are not closed.
+    fn ways_in(&self, by: Held, stretches: &[Stretch]) -> Vec<Strip> {
+        let view = self.view;
+        let width = self.across[1] - self.across[0];
+        let least = self.least(by);
+        let mut ways = Vec::new();
+        for stretch in stretches.iter().filter(|stretch| stretch.columns.len() >= least) {
+            let Some(columns) = self.columns(stretch, by, least) else { continue };
+            let pieces = best_pieces(&columns.scores).into_iter().filter(|(from, to)| to - from >= least);
+            ways.extend(pieces.filter(|&(from, to)| self.is_way(stretch, &columns, by, from..to)).map(|(from, to)| {
+                let along = [from, to].map(|column| view.along(stretch.columns.start + column));
+                let score = columns.scores[from..to].iter().sum::<i64>() as f64 / FULL as f64 * view.cell * width;
+                ragged(view, along, self.across, score)
+            }));
+        }
+        ways
+    }
+
+    fn is_way(&self, stretch: &Stretch, columns: &Columns, by: Held, range: Range<usize>) -> bool {
+        let (view, sides) = (self.view, beyond(self.across));
+        let length = range.len() as f64;
+        let share = |flags: &Bits| flags.count(range.clone()) as f64 / length;
+        let first = stretch.columns.start;
+        let on_map = first + range.start..first + range.end;
+        let seen = |[low, high]: [f64; 2]| {
+            let of = view.occupied_in(low, high);
+            let seen = of.reached(on_map.clone(), of.least(|share| share > 0.0));
+            seen.count(0..range.len()) as f64 / length
+        };
+        let faced = |[low, high]: [f64; 2]| {
+            let mut faced = Bits::new(view.size[0]);
+            view.covered[view.lines(low, high)].iter().for_each(|line| faced |= line);
+            faced.count(on_map.clone()) as f64 / length
+        };
+        let clear = (range.len() - stretch.unclear.count(range.clone())) as f64 / length;
+        clear >= by.least_clear()
+            && columns.held.iter().all(|held| share(held) >= LEAST_HELD)
+            && share(&columns.both) >= if by == Held::Thin && self.bay { LEAST_BOTH_BAY } else { LEAST_BOTH }
+            && sides.into_iter().all(|side| seen(side) >= LEAST_SEEN)
+            && (by == Held::Deep || sides.into_iter().all(|side| faced(side) >= LEAST_FACED))
+            && !barriers::across(view, self.across, on_map.clone()).any()
+            && !barriers::doors(view, sides, on_map.clone()).any()
+            && barriers::stops(view, self.across, on_map).is_empty()
+    }
+}
+
+/// A way whose sides are no lines.
+pub fn ragged(view: &Turned, along: [f64; 2], across: [f64; 2], score: f64) -> Strip {
+    Strip { direction: view.direction, along, across, score, bays: false, is_ragged: true, held: UNTOLD }
+}
+
+/// In fewer columns nothing seen stands at a side of any way.
+pub fn fewest_seen(view: &Turned) -> f64 {
+    LEAST_SEEN * LONG.0 / view.cell
+}
+
+/// How far beyond a strip's borders its sides may stand, metres.
+pub fn depth(across: [f64; 2]) -> f64 {
+    DEPTH.1.max(DEPTH.0 * (across[1] - across[0]))
+}
+
+/// Where a strip's sides may stand, across.
+pub fn beyond(across: [f64; 2]) -> [[f64; 2]; 2] {
+    let depth = depth(across);
+    [[across[0] - depth, across[0]], [across[1], across[1] + depth]]
+}
