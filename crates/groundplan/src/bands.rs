@@ -7,6 +7,8 @@ use std::thread::{Scope, ScopedJoinHandle};
 
 /// Rows of one band: enough to be worth a thread's while, few enough to share out evenly.
 pub const BAND_ROWS: usize = 64;
+/// Such as strips, or rows of racks.
+const SEVERAL: usize = 32;
 
 /// What `pass` makes of each band of `0..rows`, in the bands' order. Threads are started only when asked for.
 pub fn map_bands<T: Send>(rows: usize, threads: usize, pass: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
@@ -18,7 +20,18 @@ pub fn map_each<T: Send>(count: usize, threads: usize, make: impl Fn(usize) -> T
     map_each_in(count, threads, |(), n| make(n))
 }
 
-/// The same in room of each thread's own, which it finds as it left it: what is large is not asked of the system anew.
+/// All that `make` makes of each of `0..count`, in their order; only several together are worth a thread's while.
+pub fn flat_map_each<T: Send, M: IntoIterator<Item = T>>(
+    count: usize,
+    threads: usize,
+    make: impl Fn(usize) -> M + Sync,
+) -> Vec<T> {
+    let some = |n: usize| n * SEVERAL..((n + 1) * SEVERAL).min(count);
+    let made = map_each(count.div_ceil(SEVERAL), threads, |n| some(n).flat_map(&make).collect::<Vec<_>>());
+    made.into_iter().flatten().collect()
+}
+
+/// [`map_each`] in room of each thread's own, which it finds as it left it: what is large is not asked of the system anew.
 pub fn map_each_in<T: Send, R: Default + Send>(
     count: usize,
     threads: usize,

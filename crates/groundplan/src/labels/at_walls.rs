@@ -5,7 +5,7 @@ use super::corridors::Strip;
 use super::racks::{Crossings, Row, SAME, lines_behind, without};
 use super::turned::Turned;
 use super::whole::{RIM, trimmed};
-use crate::bands::map_bands;
+use crate::bands::flat_map_each;
 
 /// Behind a wall from so far to so far off, metres, more than this share is not free.
 const BEYOND: [f64; 2] = [0.2, 0.7];
@@ -54,7 +54,7 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], known: &[R
         }
         found
     };
-    map_bands(strips.len(), threads, |some| some.flat_map(beside).collect::<Vec<_>>()).concat()
+    flat_map_each(strips.len(), threads, beside)
 }
 
 /// Where goods stand that hide a wall on one side of a row.

@@ -6,7 +6,7 @@ use super::near::Near;
 use super::racks::{DEPTH, Row, apart};
 use super::runs::{close, runs};
 use super::turned::Turned;
-use crate::bands::map_bands;
+use crate::bands::flat_map_each;
 use crate::bits::Bits;
 use std::ops::Range;
 
@@ -215,7 +215,7 @@ fn candidates(view: &Turned, fronts: Fronts, threads: usize) -> Vec<Row> {
         }
         found
     };
-    map_bands(view.offsets.len(), threads, |some| some.flat_map(above).collect::<Vec<_>>()).concat()
+    flat_map_each(view.offsets.len(), threads, above)
 }
 
 /// Of a range of columns between two lines, the pieces that stand free.

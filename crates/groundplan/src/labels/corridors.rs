@@ -73,8 +73,8 @@ pub fn widest(strips: &[Strip]) -> f64 {
 /// Corridors along every direction, in the order of the directions: of each those between lines by their places, and
 /// then the ragged ones, the best first. And ragged ways over such as are too short by themselves.
 pub fn find(evidence: &Evidence, views: &[Turned]) -> (Vec<Strip>, Vec<Strip>) {
-    // Each view shares its own work out among what threads are left.
-    let threads = evidence.threads.div_ceil(views.len().max(1));
+    // Of few views one may be done long before another, which then has all threads.
+    let threads = if views.len() < evidence.threads { evidence.threads } else { 1 };
     let found = map_each(views.len(), evidence.threads, |n| {
         let family = Family::new(evidence, views, &views[n], &[]);
         let mut parts = family.candidates(threads, evidence.recall);

@@ -23,6 +23,8 @@ const LEAST_MOUTHS: usize = 2;
 const LED_TO: f64 = 0.65;
 /// And so much of its side between them has structure on it.
 const BETWEEN: f64 = 0.5;
+/// So many columns of the strips above lines are worth a thread's while.
+const TOGETHER: usize = 1 << 13;
 /// Strips that overlap across by more than this share of the narrower one are rivals.
 const RIVAL: f64 = 0.25;
 
@@ -115,7 +117,7 @@ impl<'a> Family<'a> {
     /// The strips between every two lines that are a corridor's width apart.
     pub fn candidates(&self, threads: usize, recall: &Recall) -> Vec<Candidate> {
         let view = self.view;
-        self.sweep().find(1, threads, |near, low, found| {
+        self.sweep().find(TOGETHER, threads, |near, low, found| {
             for (sides, across) in self.facing(low) {
                 let pieces = recall.strips.or_find(
                     || self.key(across),
@@ -142,7 +144,7 @@ impl<'a> Family<'a> {
     /// The corridors into which others open side by side.
     pub fn before_mouths(&self, mouths: &[Vec<Range<usize>>], threads: usize, recall: &Recall) -> Vec<Candidate> {
         let view = self.view;
-        self.sweep().find(1, threads, |near, low, found| {
+        self.sweep().find(TOGETHER, threads, |near, low, found| {
             for (sides, across) in self.facing(low) {
                 let width = across[1] - across[0];
                 let led_to = |strip: &Strip| sides.iter().any(|&side| self.is_led_to(strip, side, &mouths[side]));

@@ -10,7 +10,7 @@ use super::sections::{Columns, Free, WIDTH};
 use super::through::{Seen, Through};
 use super::turned::Turned;
 use super::widths::Widths;
-use crate::bands::map_bands;
+use crate::bands::flat_map_each;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
 const IN_LINE: (f64, f64) = (0.7, 0.5);
@@ -31,19 +31,20 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let placed = placed(views, strips.iter().map(Strip::place));
     let widest = corridors::widest(strips);
     let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, &placed, widest, row)).collect();
-    let mut seen = Vec::new();
-    for (row, reaching) in rows.iter().zip(&reaching) {
-        let (Some(between), Some(other)) = (row.between, crossing(views, row.direction)) else { continue };
+    let seen = flat_map_each(rows.len(), evidence.threads, |n| {
+        let (row, reaching) = (&rows[n], &reaching[n]);
+        let (between, other) = (row.between?, crossing(views, row.direction)?);
         let view = &views[row.direction];
         let middles = between.map(|n| strips[n].middle());
         let columns = Columns::new(look, &evidence.grid.frame, [view, other], reaching, view.pitch);
-        let is_within = |way: &[f64; 2]| row.along[0] < way[0] && way[1] < row.along[1];
-        for way in columns.ways().into_iter().filter(is_within) {
-            let found = if columns.is_as_bays(way) { &mut doubtful } else { &mut gates };
-            found.push(strip(view, other, row, way, middles));
-        }
         let beside = between.map(|n| strips[n].width()).into_iter().fold(0.0, f64::max);
-        seen.push(Seen { own: row.along, row: reaching, columns, views: [view, other], between, middles, beside });
+        Some(Seen { own: row.along, row: reaching, columns, views: [view, other], between, middles, beside })
+    });
+    for Seen { own, row, columns, views: [view, other], middles, .. } in &seen {
+        for way in columns.ways().into_iter().filter(|way| own[0] < way[0] && way[1] < own[1]) {
+            let found = if columns.is_as_bays(way) { &mut doubtful } else { &mut gates };
+            found.push(strip(view, other, row, way, *middles));
+        }
     }
     let mut sure = Widths::of(views, strips.iter().filter(|strip| !strip.bays).chain(&gates));
     let through = Through::new(seen, views.len()).find(&mut sure);
@@ -124,9 +125,7 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: 
             let cross = |n: usize| cross([view, other], row, (&columns, &ways), &strips[n], aisles);
             judged.filter_map(|n| cross(n).map(|crossed| (n, crossed))).collect()
         };
-        let found =
-            map_bands(rows.len(), evidence.threads, |some| rows[some].iter().flat_map(crossing).collect::<Vec<_>>());
-        for (n, row) in found.into_iter().flatten() {
+        for (n, row) in flat_map_each(rows.len(), evidence.threads, |n| crossing(&rows[n])) {
             crossed[n].push(row);
         }
     }

@@ -4,7 +4,7 @@ use super::corridors::{self, Strip};
 use super::near::Near;
 use super::turned::{Turned, least_sine};
 use super::{JunctionKind, barriers};
-use crate::bands::map_bands;
+use crate::bands::flat_map_each;
 use crate::grid::{angle_between, turned};
 use crate::subdivision::distance;
 use std::collections::BTreeMap;
@@ -74,8 +74,7 @@ pub fn find(views: &[Turned], strips: &[Strip], threads: usize) -> Vec<Meeting> 
         let others = others.filter(move |b| strips[a].direction != strips[*b].direction);
         others.filter_map(move |b| meet(views, strips, [a, b]))
     };
-    let met = map_bands(strips.len(), threads, |some| some.flat_map(met_by).collect::<Vec<_>>());
-    let mut met = met.concat();
+    let mut met = flat_map_each(strips.len(), threads, met_by);
     let nearest = nearest(&met, strips.len());
     met.retain(|meeting| meeting.is_led_to(&nearest));
     let mut found: Vec<Meeting> = Vec::new();

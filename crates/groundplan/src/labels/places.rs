@@ -3,6 +3,7 @@
 
 use super::Evidence;
 use super::turned::Turned;
+use crate::bands::map_each;
 use std::f64::consts::FRAC_PI_2;
 
 /// Rows of squares run along the dominant direction, or square to it: whichever is nearer to this. It lies between the
@@ -12,6 +13,8 @@ const FORWARDS: [f64; 2] = [0.927, 0.375];
 const BEFORE: f64 = 0.01;
 /// Every so many columns and rows of the turned map are looked at.
 const STRIDE: usize = 3;
+/// So many rows are worth a thread's while.
+const ROWS: usize = 512;
 
 /// What is named is this many times as large as the squares that it is named by, or larger.
 const SMALL: f64 = 2.0;
@@ -46,7 +49,7 @@ impl Squares {
         let mut made = Self { heading, corners: [[0.0; 2]; 2], side };
         // Of the view's own axes, each is one of the squares', be it backwards.
         let along = extent(&free_columns(view), view.start[0], view.cell);
-        let across = extent(&free_rows(view), view.start[1], view.cell);
+        let across = extent(&free_rows(view, evidence.threads), view.start[1], view.cell);
         let corners = [0, 1].map(|n| made.place(view.to_map([along[n], across[n]])));
         made.corners = [f64::min, f64::max].map(|end| [0, 1].map(|axis| end(corners[0][axis], corners[1][axis])));
         made
@@ -130,13 +133,14 @@ fn free_columns(view: &Turned) -> Vec<f64> {
 }
 
 /// How much of each row is free.
-fn free_rows(view: &Turned) -> Vec<f64> {
+fn free_rows(view: &Turned, threads: usize) -> Vec<f64> {
     let row = |n: usize| {
         let low = view.start[1] + n as f64 * view.cell;
-        let columns = view.all_blocked(low, low + view.cell).into_iter().step_by(STRIDE);
-        columns.map(|blocked| 1.0 - blocked).sum::<f64>()
+        let blocked = view.blocked_in(low, low + view.cell);
+        (0..view.size[0]).step_by(STRIDE).map(|column| 1.0 - blocked.share(blocked.at(column))).sum::<f64>()
     };
-    (0..view.size[1]).map(row).collect()
+    let parts = view.size[1].div_ceil(ROWS);
+    map_each(parts, threads, |n| (n * ROWS..view.size[1].min((n + 1) * ROWS)).map(row).collect::<Vec<_>>()).concat()
 }
 
 /// Between which places all but a little of the free space lies.

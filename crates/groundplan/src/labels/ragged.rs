@@ -13,8 +13,8 @@ use super::{Evidence, pieces};
 /// Widths are tried in such steps, and places across in such shares of the width.
 const WIDER: f64 = 1.25;
 const STEP: f64 = 0.125;
-/// So many are worth a thread's while.
-const TOGETHER: usize = 64;
+/// So many columns of them are worth a thread's while.
+const TOGETHER: usize = 1 << 17;
 /// The narrowest with deep sides, metres: what is narrower has its sides nearer than goods are apart.
 const NARROWEST: f64 = 1.2;
 /// The widest is so much of the widest corridor: with what its sides leave it is as wide.
@@ -149,6 +149,7 @@ impl<'a> Seen<'a> {
         (self.below[(row(high) + 2).min(last)] - self.below[row(low).saturating_sub(1).min(last)]) as f64
     }
 }
+
 /// From side to side of a way: with all beside it along which next to nothing stands, no farther than its sides may stand
 /// and no wider than that.
 fn widened(view: &Turned, way: &Strip, widest: f64) -> [f64; 2] {

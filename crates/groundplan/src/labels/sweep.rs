@@ -23,12 +23,12 @@ pub struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    /// What is found at the places of one group after another. On a small view a group is so many places in their order,
-    /// on a large one those that lie in the same rows. `find` is given what lies near the places of the group, the number
-    /// of a place, and where to put what it finds.
+    /// What is found at the places of one group after another. On a small view a group is places in their order that have
+    /// so many columns together, which are worth a thread's while, on a large one those that lie in the same rows. `find`
+    /// is given what lies near the places of the group, the number of a place, and where to put what it finds.
     pub fn find<T: Send>(
         &self,
-        together: usize,
+        columns: usize,
         threads: usize,
         find: impl Fn(&Near, usize, &mut Vec<T>) + Sync,
     ) -> Vec<T> {
@@ -40,7 +40,7 @@ impl Sweep<'_> {
             order.sort_by_key(|&place| rows(place));
             order.chunk_by(|&one, &two| rows(one) == rows(two)).collect()
         } else {
-            order.chunks(together).collect()
+            order.chunks((columns / view.size[0]).max(1)).collect()
         };
         let made = map_each_in(groups.len(), threads, |room: &mut Summed, n| {
             let places = || groups[n].iter().map(|&place| self.places[place]);

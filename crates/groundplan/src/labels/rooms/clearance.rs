@@ -12,6 +12,8 @@ use std::ops::Range;
 const WHOLE: usize = 1 << 24;
 /// So many rows at a time.
 const ROWS: usize = 128;
+/// So many runs of a row are worth a thread's while.
+const TOGETHER: usize = 1 << 13;
 
 /// The clearances of a raster: kept where they are few, else made again whenever they are asked for.
 pub struct Clearance(Option<Rows>);
@@ -58,10 +60,13 @@ impl Clearance {
     ) {
         let width = raster.width;
         if let Some(rows) = &self.0 {
-            for (n, run) in runs.all.iter().enumerate() {
+            let along = |run: &Run| {
                 let start = run.pixels().start;
-                visit(n, Width::new(&rows.row(start / width)[start % width..][..run.len()]));
-            }
+                Width::new(&rows.row(start / width)[start % width..][..run.len()])
+            };
+            let parts: Vec<&[Run]> = runs.all.chunks(TOGETHER).collect();
+            let widths = map_each(parts.len(), threads, |n| parts[n].iter().map(along).collect::<Vec<_>>());
+            (0..).zip(widths.into_iter().flatten()).for_each(|(n, width)| visit(n, width));
             return;
         }
         let mut next = 0;
