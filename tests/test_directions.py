@@ -8,6 +8,7 @@ import zoo
 from zoo import RESOLUTION, TURNS, ZOO, Canvas, apart
 
 import groundplan
+from groundplan import simulate
 
 
 def angles_of(picture: zoo.Picture) -> zoo.Points:
@@ -118,6 +119,12 @@ def test_each_wing_has_the_direction_of_its_ends_be_that_little_beside_its_long_
     expected = np.radians([10.0, 100.0, 10.0 + turn, 100.0 + turn])
     assert len(found) == 4
     assert (apart(expected, found).min(axis=1) < np.radians(0.15)).all(), np.degrees(found)
+
+
+@pytest.mark.parametrize(("skew", "seed"), [(10.0, 106), (-14.0, 14)])
+def test_a_skewed_hall_has_no_third_direction_by_goods_that_are_square_to_its_racks(skew: float, seed: int) -> None:
+    made = simulate.warehouse(skew=skew, seed=seed, width=44.0, depth=32.0, yaw=6.2)
+    assert len(groundplan.survey(made.map).directions.angles) == 2
 
 
 def test_angles_lie_between_minus_and_plus_a_right_angle() -> None:

@@ -122,7 +122,9 @@ impl Candidate {
 }
 
 /// A ground plan has two directions, be it only by the ends of its racks, and so has each wing of it: of the weak ones
-/// those square to a strong one that has no such other. Beside a single one the second need not be square.
+/// those square to a strong one that has no such other. Beside a single one the second need not be square. Where no two
+/// strong ones are square to one another the plan may be skewed, and goods square to its racks are no second wing's
+/// ends: then each has such a weak one, or none has.
 fn seconds(weak: &[Candidate], strong: &[Candidate]) -> Vec<Candidate> {
     let share = |f: &Candidate, to: &Candidate| match (is_square(f.angle, to, SQUARE.0), strong.len()) {
         (true, _) => SQUARE.1,
@@ -131,7 +133,9 @@ fn seconds(weak: &[Candidate], strong: &[Candidate]) -> Vec<Candidate> {
     };
     let is_its =
         |f: &Candidate, to: &Candidate| f.metres >= share(f, to) * to.metres && f.exceeds_chance_beside(strong);
-    alone(strong).filter_map(|to| weak.iter().copied().find(|f| is_its(f, to))).collect()
+    let found: Vec<Candidate> = alone(strong).filter_map(|to| weak.iter().copied().find(|f| is_its(f, to))).collect();
+    let is_skewed = alone(strong).count() == strong.len() && found.len() < strong.len();
+    if is_skewed { Vec::new() } else { found }
 }
 
 /// Those that have no other square to them.
