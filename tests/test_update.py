@@ -214,6 +214,18 @@ def test_a_patch_of_truth_values_is_occupied_or_free() -> None:
     assert updated.to_json() == groundplan.survey(now, resolution=RESOLUTION).to_json()
 
 
+def test_that_nothing_is_free_or_occupied_is_said_no_longer_than_it_is_true() -> None:
+    picture = np.full((60, 60), UNKNOWN, dtype=np.uint8)
+    found = groundplan.survey(picture, resolution=RESOLUTION)
+    for value, missing in ((FREE, {"no-occupied"}), (OCCUPIED, set())):
+        picture = picture.copy()
+        picture[30, value // 20] = value
+        found = found.update(np.full((1, 1), value, dtype=np.uint8), 30, value // 20)
+        codes = {warning.code for warning in found.warnings}
+        assert codes & {"no-free-space", "no-occupied"} == missing
+        assert found.to_json() == groundplan.survey(picture, resolution=RESOLUTION).to_json()
+
+
 def test_a_map_of_another_size_or_meaning_is_surveyed_anew() -> None:
     survey = groundplan.survey(tower(), keep=True)
     for other in (map_of("turned_warehouse"), replace(tower(), states=np.roll(tower().states, 1))):

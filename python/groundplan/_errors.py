@@ -16,16 +16,22 @@ _SAVE_AGAIN = "it was cut short or damaged on its way: copy it again, or save th
 
 #: What helps wherever a fault arises, by its code; who raises it may know better.
 _HINTS = {
+    "file.json": "it was cut short or damaged on its way: copy it again, or make it anew",
     "map.corrupt": _SAVE_AGAIN,
     "map.empty": _SAVE_AGAIN,
     "map.format": "groundplan survey --help names what can be read",
     "map.header": _SAVE_AGAIN,
     "map.image": _OF_A_YAML,
+    "map.origin": "x and y of the lower left pixel's corner in metres and a yaw in radians, such as [-12.0, -8.5, 0.0]",
+    "map.thresholds": "shares of black: map_saver writes free_thresh 0.25 and occupied_thresh 0.65",
     "map.truncated": _SAVE_AGAIN,
     "map.yaml": _OF_A_YAML,
+    "point.finite": "numbers, in metres",
+    "settings.toml": "a table for each stage, such as [lines] and below it snr = 3.0",
     "survey.content": "groundplan survey makes it anew",
     "survey.format": "groundplan survey MAP writes one",
     "survey.json": "groundplan survey makes it anew",
+    "survey.version": "groundplan survey makes it anew",
 }
 
 

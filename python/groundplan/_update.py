@@ -18,9 +18,10 @@ import numpy.typing as npt
 from groundplan import _core
 from groundplan._errors import ParameterError
 from groundplan._results import record
-from groundplan.maps import Map
+from groundplan.maps import Map, MapWarning
 from groundplan.maps._canvas import Canvas
 from groundplan.maps._source import Bytes, Span, bands
+from groundplan.maps._warnings import MISSING
 from groundplan.parameters import named
 from groundplan.stages import cores, layout
 
@@ -144,7 +145,13 @@ def patched(map: Map, patch: Bytes, area: Area) -> Map:
                 own = own.copy()
                 own[first - part.start : last - part.start, slice(*across)] = patch[first - top : last - top]
             canvas.put(part.start, own)
-        return replace(map, pixels=canvas.pixels())
+        return replace(map, pixels=canvas.pixels(), warnings=still_true(map, patch))
+
+
+def still_true(map: Map, patch: Bytes) -> tuple[MapWarning, ...]:
+    """A map's warnings but for those that a state is missing which a patch brings."""
+    brought = set(np.unique(map.states[patch]).tolist())
+    return tuple(warning for warning in map.warnings if MISSING.get(warning.code) not in brought)
 
 
 def as_pixels(map: Map, patch: npt.NDArray[Any]) -> Bytes:

@@ -263,8 +263,8 @@ class Survey(Stage):
         -------
         Survey
             To be updated in its turn; where nothing changed, this one. What `groundplan.survey` was given beside the
-            map still holds. A patch does not change how pixels are read, nor the warnings of that; another map brings
-            its own.
+            map still holds. A patch does not change how pixels are read, nor the warnings of that, but for those that
+            no pixel is free, or occupied, where it brings one; another map brings its own.
 
         Raises
         ------

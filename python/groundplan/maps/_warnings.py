@@ -87,6 +87,10 @@ def unknown_as_occupied(level: int, levels: Levels, meaning: Meaning) -> MapWarn
     )
 
 
+#: The state that no pixel has, by the warning that says so.
+MISSING = {"no-free-space": FREE, "no-occupied": OCCUPIED}
+
+
 def nonsense(
     shares: dict[int, float], high: float | None, low: float | None, *, walls_darker: bool = False
 ) -> list[MapWarning]:

@@ -157,16 +157,18 @@ fn widened(view: &Turned, way: &Strip, widest: f64) -> [f64; 2] {
     let [below, above] = beyond(way.across);
     let is_clear = |low: f64| view.mean_blocked(columns.clone(), low, low + view.cell) <= REACHED;
     let [mut low, mut high] = way.across;
-    let (mut down, mut up) = (true, true);
-    while (down || up) && high - low + view.cell <= widest {
-        down = down && low - view.cell >= below[0] && is_clear(low - view.cell);
+    loop {
+        let has_room = |low: f64, high: f64| high - low + view.cell <= widest;
+        let down = has_room(low, high) && low - view.cell >= below[0] && is_clear(low - view.cell);
         if down {
             low -= view.cell;
         }
-        up = up && high + view.cell <= above[1] && is_clear(high);
+        let up = has_room(low, high) && high + view.cell <= above[1] && is_clear(high);
         if up {
             high += view.cell;
         }
+        if !down && !up {
+            return [low, high];
+        }
     }
-    [low, high]
 }

@@ -19,8 +19,8 @@ use super::widths;
 use super::{Evidence, Ground};
 use crate::bands::{Later, Side, each, map_each};
 
-/// A corridor that meets no other is so long that it is one alone, or so long, or as long for its width as what is no niche where there are racks and no walls between them, if so many
-/// others run beside it, no more than a rack away, that are as wide and as long but for this share.
+/// A corridor that meets no other and is shorter than one alone is so long, metres, and so many others run beside it, no
+/// more than a rack away, that are as wide and as long but for this share.
 const RECURS: f64 = 3.5;
 const OTHERS: usize = 2;
 const ALIKE: f64 = 0.2;
