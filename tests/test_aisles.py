@@ -290,6 +290,18 @@ def test_the_floor_between_rays_is_floor_where_pixels_are_finer_than_they_are_de
     assert aisle["width"] == pytest.approx(2.0, abs=0.15)
 
 
+def test_aisles_open_into_the_main_aisle_though_the_wall_at_its_end_is_askew(shared: Path) -> None:
+    survey = groundplan.survey(groundplan.read(shared / "maps" / "aws_small_warehouse.yaml"))
+    (main,) = (label for label in survey.of_kind("corridor") if label["width"] > 2.0)
+    assert abs(np.subtract(*main["axis"])[0]) > 15.0
+    assert sorted(label["type"] for label in survey.of_kind("junction") if label["type"] != "end") == [
+        "L",
+        "T",
+        "T",
+        "T",
+    ]
+
+
 def test_what_lies_beside_an_aisle_nearly_along_it_does_not_cross_it(shared: Path) -> None:
     survey = groundplan.survey(groundplan.read(shared / "maps" / "rbk_warehouse.yaml"))
     ways = [np.subtract(*label["axis"]) for label in survey.of_kind("corridor")]
@@ -297,7 +309,10 @@ def test_what_lies_beside_an_aisle_nearly_along_it_does_not_cross_it(shared: Pat
     assert all(cosine < 0.5 or cosine > 0.999 for cosine in cosines)
 
 
-@pytest.mark.parametrize(("name", "aisles", "racks"), [("radish_intel_jones_farms", 7, 0), ("textile_factory", 5, 0)])
+@pytest.mark.parametrize(
+    ("name", "aisles", "racks"),
+    [("radish_intel_jones_farms", 7, 0), ("textile_factory", 5, 0), ("aws_small_warehouse", 5, 6)],
+)
 def test_real_sites_have_the_aisles_that_a_person_counts(name: str, aisles: int, racks: int, shared: Path) -> None:
     survey = groundplan.survey(groundplan.read(shared / "maps" / f"{name}.yaml"))
     assert len(survey.of_kind("corridor")) == aisles

@@ -7,8 +7,9 @@
 
 use super::beside::{Beside, placed};
 use super::family::Family;
+use super::ragged::{self, Ways};
 use super::turned::Turned;
-use super::{Evidence, mouths, ragged};
+use super::{Evidence, mouths};
 use crate::bands::map_each;
 
 /// A strip of free space along one direction, in the direction's own places (metres along and across).
@@ -71,8 +72,9 @@ pub fn widest(strips: &[Strip]) -> f64 {
 }
 
 /// Corridors along every direction, in the order of the directions: of each those between lines by their places, and
-/// then the ragged ones, the best first. And ragged ways over such as are too short by themselves.
-pub fn find(evidence: &Evidence, views: &[Turned]) -> (Vec<Strip>, Vec<Strip>) {
+/// then the ragged ones, the best first. And ragged ways over such as are too short by themselves, and what walls leave of
+/// others.
+pub fn find(evidence: &Evidence, views: &[Turned]) -> (Vec<Strip>, [Vec<Strip>; 2]) {
     // Of few views one may be done long before another, which then has all threads.
     let threads = if views.len() < evidence.threads { evidence.threads } else { 1 };
     let found = map_each(views.len(), evidence.threads, |n| {
@@ -82,23 +84,21 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> (Vec<Strip>, Vec<Strip>) {
         parts.retain(|c| !c.is_corridor);
         let mut known = family.best(whole, &[]);
         let sure: Vec<Strip> = known.iter().filter(|strip| !strip.bays).cloned().collect();
-        let (ragged, over) = ragged::find(evidence, views, &views[n], &sure, threads);
+        let ragged = ragged::find(evidence, views, &views[n], &sure, threads);
         // What is no corridor as a whole may be one without what others have of it.
-        known.extend(family.best(parts, &[&known[..], &ragged].concat()));
+        known.extend(family.best(parts, &[&known[..], &ragged.sure].concat()));
         known.sort_by(|a, b| a.middle().total_cmp(&b.middle()).then(a.along[0].total_cmp(&b.along[0])));
-        (known, ragged, over)
+        (known, ragged)
     });
-    let (mut known, mut ragged, mut over) = (Vec::new(), Vec::new(), Vec::new());
-    for (between, beside, instead) in found {
-        known.push(between);
-        ragged.push(beside);
-        over.extend(instead);
-    }
+    let (known, ragged): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     let mut strips = known.concat();
     let mut placed = placed(views, strips.iter().map(Strip::place));
-    for mut ragged in ragged {
-        ragged.retain(|way| !is_askew_in(views, way, &strips, &placed));
-        for way in ragged {
+    let mut others = [Vec::new(), Vec::new()];
+    for Ways { mut sure, over, cut } in ragged {
+        others[0].extend(over);
+        others[1].extend(cut);
+        sure.retain(|way| !is_askew_in(views, way, &strips, &placed));
+        for way in sure {
             placed[way.direction].add(strips.len(), way.along, way.across);
             strips.push(way);
         }
@@ -116,8 +116,10 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> (Vec<Strip>, Vec<Strip>) {
     });
     strips.extend(more.into_iter().flatten());
     strips.sort_by_key(|strip| strip.direction);
-    over.retain(|way| !is_askew_in(views, way, &strips, &placed));
-    (strips, over)
+    for ways in &mut others {
+        ways.retain(|way| !is_askew_in(views, way, &strips, &placed));
+    }
+    (strips, others)
 }
 
 /// True when a strip's middle lies in one of others, by their direction and place, that runs nearly the same way.

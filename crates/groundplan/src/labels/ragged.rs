@@ -4,7 +4,7 @@
 
 use super::beside::Beside;
 use super::corridors::{self, Strip};
-use super::stretches::{Candidate, Held, beyond, depth, fewest_seen, ragged};
+use super::stretches::{Candidate, Found, Held, beyond, depth, fewest_seen, ragged};
 use super::sums::What;
 use super::sweep::Sweep;
 use super::turned::Turned;
@@ -23,18 +23,23 @@ const WIDEST: f64 = 0.75;
 const BAY: f64 = pieces::BAY_WIDTH.1;
 /// A way that shares more than this of its width with a known one is none.
 const SHARED: f64 = 0.25;
+/// A way of which others leave less than this share is none.
+const MOST: f64 = 0.75;
 /// What lies beside a way is of it where no more than this share of it is not free.
 const REACHED: f64 = 0.05;
 
-/// The ways along one direction beside those that are known, the best first; and those over known ones that are too short
-/// by themselves, for where these turn out to be none.
-pub fn find(
-    evidence: &Evidence,
-    views: &[Turned],
-    view: &Turned,
-    known: &[Strip],
-    threads: usize,
-) -> (Vec<Strip>, Vec<Strip>) {
+/// What may be a way.
+pub struct Ways {
+    /// Beside those that are known, the best first.
+    pub sure: Vec<Strip>,
+    /// Over known ones that are too short by themselves, for where these turn out to be none.
+    pub over: Vec<Strip>,
+    /// What walls at its ends leave of one, for places of racks.
+    pub cut: Vec<Strip>,
+}
+
+/// The ways along one direction beside those that are known.
+pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip], threads: usize) -> Ways {
     let parameters = evidence.parameters;
     let bay = corridors::pitches(views, view).into_iter().fold(0.0, |widest, pitch| f64::max(widest, BAY * pitch));
     let seen = Seen::new(view);
@@ -64,15 +69,19 @@ pub fn find(
         let (across, deep) = tried[n];
         let key = || view.key(across, depth(across)).number(bay).with(u64::from(deep.is_some()));
         let ways = evidence.recall.ragged.or_find(key, || Candidate::new(near.view(), across, bay).ways(deep));
-        found.extend(ways.into_iter().map(|(way, by)| Short::new(view, n, &way, by)));
+        found.extend(ways.iter().map(|way| Short::new(view, n, way)));
     });
     candidates.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.tried.cmp(&b.tried)));
     let mut all = known.to_vec();
-    let mut over = Vec::new();
+    let [mut over, mut cut] = [0; 2].map(|_| Apart { ways: Vec::new(), placed: Beside::of(view) });
     let mut placed = Beside::of(view);
     let mut next = 0;
     for short in candidates {
         let (candidate, by) = (short.strip(view, tried[short.tried as usize].0), short.by);
+        if short.is_cut {
+            cut.add(&candidate);
+            continue;
+        }
         for strip in &all[next..] {
             placed.add(next, strip.along, strip.across);
             next += 1;
@@ -83,18 +92,34 @@ pub fn find(
             all.push(candidate);
             continue;
         }
-        if rivals.iter().all(|rival| rival.is_short()) && !over.iter().any(|way| is_beside(&candidate, way)) {
-            over.push(candidate.clone());
+        if rivals.iter().all(|rival| rival.is_short()) {
+            over.add(&candidate);
         }
         let whole = Candidate::new(view, candidate.across, bay);
         let ways = whole.ways_left(by, whole.around(&candidate), &rivals);
-        all.extend(
-            ways.into_iter().filter(|way| way.along[0] < candidate.along[1] && candidate.along[0] < way.along[1]),
-        );
+        let is_of_it = |way: &Strip| way.along[0] < candidate.along[1] && candidate.along[0] < way.along[1];
+        all.extend(ways.into_iter().filter(|(way, is_cut)| !is_cut && is_of_it(way)).map(|(way, _)| way));
     }
     let whole = |way: Strip| Strip { across: widened(view, &way, parameters.labels_max_width), ..way };
-    let ways = all.split_off(known.len()).into_iter().map(whole).collect();
-    (ways, over.into_iter().map(whole).collect())
+    let [sure, over, cut] =
+        [all.split_off(known.len()), over.ways, cut.ways].map(|ways| ways.into_iter().map(whole).collect());
+    Ways { sure, over, cut }
+}
+
+/// Ways that share no ground with one another, the best first.
+struct Apart {
+    ways: Vec<Strip>,
+    placed: Beside,
+}
+
+impl Apart {
+    fn add(&mut self, way: &Strip) {
+        let near = self.placed.touching(way.along, way.across);
+        if !near.into_iter().any(|n| is_beside(way, &self.ways[n])) {
+            self.placed.add(self.ways.len(), way.along, way.across);
+            self.ways.push(way.clone());
+        }
+    }
 }
 
 /// A way in little room: of a large map there are millions, of which few stay.
@@ -105,12 +130,13 @@ struct Short {
     /// From column to column.
     columns: [u32; 2],
     by: Held,
+    is_cut: bool,
 }
 
 impl Short {
-    fn new(view: &Turned, tried: usize, way: &Strip, by: Held) -> Self {
+    fn new(view: &Turned, tried: usize, (way, by, is_cut): &Found) -> Self {
         let columns = way.along.map(|u| view.border(u) as u32);
-        Self { score: way.score, tried: tried as u32, columns, by }
+        Self { score: way.score, tried: tried as u32, columns, by: *by, is_cut: *is_cut }
     }
 
     fn strip(&self, view: &Turned, across: [f64; 2]) -> Strip {
@@ -120,10 +146,25 @@ impl Short {
 }
 
 /// True when two strips share so much of their width that one of them is too much.
-pub fn is_beside(one: &Strip, two: &Strip) -> bool {
+fn is_beside(one: &Strip, two: &Strip) -> bool {
     let shared = one.across[1].min(two.across[1]) - one.across[0].max(two.across[0]);
     let together = one.along[1].min(two.along[1]) - one.along[0].max(two.along[0]);
     together > 0.0 && shared > SHARED * one.width().min(two.width())
+}
+
+/// What others at its ends leave of a way, where that is most of it.
+pub fn clear_of(way: &Strip, others: &[Strip]) -> Option<Strip> {
+    let mut along = way.along;
+    for other in others.iter().filter(|other| other.direction == way.direction && is_beside(way, other)) {
+        if other.along[0] <= along[0] {
+            along[0] = along[0].max(other.along[1]);
+        } else if other.along[1] >= along[1] {
+            along[1] = other.along[0];
+        } else {
+            return None;
+        }
+    }
+    (along[1] - along[0] >= MOST * way.length()).then(|| Strip { along, ..way.clone() })
 }
 
 /// How much is occupied between two places across: where it is next to nothing, no column need be asked.

@@ -9,7 +9,7 @@ use super::patches::{Area, Patches};
 use super::period::Period;
 use super::rooms::{Bar, Width};
 use super::squares::Band;
-use super::stretches::Held;
+use super::stretches;
 use super::sums::Told;
 use crate::bits::{Bits, WORD, lowest};
 use crate::grid::Grid;
@@ -120,7 +120,7 @@ kinds! {
     strips: Vec<(Strip, bool)>,
     /// Stretches of such strips that are not closed, from column to column.
     open: Vec<Range<usize>>,
-    ragged: Vec<(Strip, Held)>,
+    ragged: Vec<stretches::Found>,
     narrows: Vec<Bar>,
     /// Of runs of the free space along rows.
     widths: Vec<Width>,

@@ -35,6 +35,9 @@ const NICHES: (f64, f64) = (2.2, 4.0);
 /// less than that share of the other, neither goes on as far as both must, and both are shut.
 const FACING: f64 = 0.5;
 
+/// A way opens into another when its end is so near to the other's side, metres.
+const MOUTH: f64 = 3.0;
+
 /// What the map shows without its faces.
 pub struct Sketch {
     pub views: Vec<Turned>,
@@ -126,20 +129,17 @@ pub struct Plan {
 impl Plan {
     fn of(evidence: &Evidence, look: &Look, views: &[Turned], on_legs: &[Row]) -> Self {
         let least = evidence.parameters.labels_min_width;
-        let (found, over) = corridors::find(evidence, views);
+        let (found, [over, cut]) = corridors::find(evidence, views);
         let found = joined::join(views, found, least);
         let found = gates::without_bays(evidence, look, views, found);
         let threads = evidence.threads;
         let mut plan = Self::new(views, found, threads);
         // What was too short to stay bars no way whose sides are no lines.
-        let is_free = |way: &Strip| {
-            let mut beside = plan.strips.iter().filter(|strip| strip.direction == way.direction);
-            beside.all(|strip| !ragged::is_beside(way, strip))
-        };
-        let more: Vec<Strip> = over.into_iter().filter(is_free).collect();
-        if !more.is_empty() {
-            let all = joined::join(views, [plan.strips, more].concat(), least);
-            plan = Self::new(views, all, threads);
+        plan = plan.with(views, &over, least, threads);
+        // Where racks stand and an aisle opens into it, a way that ends at walls is no part of a room.
+        let cut: Vec<Strip> = cut.into_iter().filter(|way| is_opened_into(views, way, &plan.strips)).collect();
+        if !cut.is_empty() && !plan.find_racks(views, on_legs, threads).is_empty() {
+            plan = plan.with(views, &cut, least, threads);
         }
         let gates = gates::find(evidence, look, views, &plan.strips, &plan.rows);
         let (known, more) = (plan.strips.len(), gates.len());
@@ -155,6 +155,15 @@ impl Plan {
             plan.racks = plan.find_racks(views, on_legs, threads);
         }
         plan
+    }
+
+    /// With what its ways leave of others.
+    fn with(self, views: &[Turned], others: &[Strip], least: f64, threads: usize) -> Self {
+        let more: Vec<Strip> = others.iter().filter_map(|way| ragged::clear_of(way, &self.strips)).collect();
+        if more.is_empty() {
+            return self;
+        }
+        Self::new(views, joined::join(views, [self.strips, more].concat(), least), threads)
     }
 
     fn find_racks(&self, views: &[Turned], on_legs: &[Row], threads: usize) -> Vec<Row> {
@@ -244,6 +253,20 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<S
         let mut flags = stays.into_iter();
         strips.retain(|_| flags.next().unwrap_or(false));
     }
+}
+
+/// True when another ends at a way's side, or so near that it opens into it.
+fn is_opened_into(views: &[Turned], way: &Strip, strips: &[Strip]) -> bool {
+    let own = &views[way.direction];
+    let opens = |strip: &Strip| {
+        let its = &views[strip.direction];
+        libm::sin(own.angle - its.angle).abs() > corridors::ASKEW
+            && strip.along.into_iter().any(|end| {
+                let [u, v] = own.place(its.to_map([end, strip.middle()]));
+                (way.along[0]..=way.along[1]).contains(&u) && (v - way.middle()).abs() <= way.width() / 2.0 + MOUTH
+            })
+    };
+    strips.iter().any(opens)
 }
 
 /// True when others that are alike run beside a strip, one after another, so far apart, metres.

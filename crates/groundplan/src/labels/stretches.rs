@@ -66,6 +66,9 @@ impl Held {
     }
 }
 
+/// A way, what holds its sides, and whether walls at its ends have cut it.
+pub type Found = (Strip, Held, bool);
+
 /// A strip, asked column by column.
 pub struct Candidate<'a> {
     view: &'a Turned,
@@ -163,16 +166,17 @@ impl<'a> Candidate<'a> {
     }
 
     /// The ways along it, those with deep sides first, if such are asked for.
-    pub fn ways(&self, deep: Option<Held>) -> Vec<(Strip, Held)> {
+    pub fn ways(&self, deep: Option<Held>) -> Vec<Found> {
         // Where a short way fits, a long one may.
         let kinds = deep.into_iter().chain([Held::Thin]);
         let least = kinds.clone().map(|by| self.least(by)).min().unwrap_or(1);
         let stretches = self.stretches(0..self.view.size[0], least, &[]);
-        kinds.flat_map(|by| self.ways_in(by, &stretches).into_iter().map(move |way| (way, by))).collect()
+        let found = |by: Held| self.ways_in(by, &stretches).into_iter().map(move |(way, is_cut)| (way, by, is_cut));
+        kinds.flat_map(found).collect()
     }
 
     /// The ways along it that rivals leave, among some columns.
-    pub fn ways_left(&self, by: Held, within: Range<usize>, rivals: &[&Strip]) -> Vec<Strip> {
+    pub fn ways_left(&self, by: Held, within: Range<usize>, rivals: &[&Strip]) -> Vec<(Strip, bool)> {
         let view = self.view;
         let rivals: Vec<Range<usize>> =
             rivals.iter().map(|rival| view.column(rival.along[0])..view.column(rival.along[1]) + 1).collect();
@@ -190,8 +194,8 @@ impl<'a> Candidate<'a> {
         open.into_iter().map(stretch).collect()
     }
 
-    /// The ways along it in stretches that are not closed.
-    fn ways_in(&self, by: Held, stretches: &[Stretch]) -> Vec<Strip> {
+    /// The ways along it in stretches that are not closed, and which of them walls at their ends have cut.
+    fn ways_in(&self, by: Held, stretches: &[Stretch]) -> Vec<(Strip, bool)> {
         let view = self.view;
         let width = self.across[1] - self.across[0];
         let least = self.least(by);
@@ -199,16 +203,50 @@ impl<'a> Candidate<'a> {
         for stretch in stretches.iter().filter(|stretch| stretch.columns.len() >= least) {
             let Some(columns) = self.columns(stretch, by, least) else { continue };
             let pieces = best_pieces(&columns.scores).into_iter().filter(|(from, to)| to - from >= least);
-            ways.extend(pieces.filter(|&(from, to)| self.is_way(stretch, &columns, by, from..to)).map(|(from, to)| {
-                let along = [from, to].map(|column| view.along(stretch.columns.start + column));
-                let score = columns.scores[from..to].iter().sum::<i64>() as f64 / FULL as f64 * view.cell * width;
-                ragged(view, along, self.across, score)
-            }));
+            for piece in pieces.map(|(from, to)| from..to).filter(|piece| self.is_way(stretch, &columns, by, piece)) {
+                let Some(left) = self.between_walls(stretch, &columns, by, piece.clone()) else { continue };
+                let along = [left.start, left.end].map(|column| view.along(stretch.columns.start + column));
+                let score = columns.scores[left.clone()].iter().sum::<i64>() as f64 / FULL as f64 * view.cell * width;
+                ways.push((ragged(view, along, self.across, score), left != piece));
+            }
         }
         ways
     }
 
-    fn is_way(&self, stretch: &Stretch, columns: &Columns, by: Held, range: Range<usize>) -> bool {
+    /// What walls across a way, or askew to it, leave of it. Nearer than it is wide to its end they end it; what goes on
+    /// behind one leads through a door, and parts of rooms are no way.
+    fn between_walls(
+        &self,
+        stretch: &Stretch,
+        columns: &Columns,
+        by: Held,
+        range: Range<usize>,
+    ) -> Option<Range<usize>> {
+        let (view, first) = (self.view, stretch.columns.start);
+        let on_map = first + range.start..first + range.end;
+        let mut walls = barriers::across(view, self.across, on_map.clone());
+        walls |= &barriers::doors(view, beyond(self.across), on_map.clone());
+        for stop in barriers::stops(view, self.across, on_map) {
+            walls.insert(stop - first - range.start);
+        }
+        if !walls.any() {
+            return Some(range);
+        }
+        let near = ((self.across[1] - self.across[0]) / view.cell) as usize;
+        let inner = near..range.len().saturating_sub(near);
+        if inner.is_empty() || walls.count(inner.clone()) > 0 {
+            return None;
+        }
+        let from = walls.runs(0..inner.start, true).last().map_or(0, |run| run.end);
+        let to = walls.runs(inner.end..range.len(), true).next().map_or(range.len(), |run| run.start);
+        let left = range.start + from..range.start + to;
+        let is_way = left.len() >= self.least(by)
+            && self.is_way(stretch, columns, by, &left)
+            && !barriers::among(view, self.across, first + left.start..first + left.end).any();
+        is_way.then_some(left)
+    }
+
+    fn is_way(&self, stretch: &Stretch, columns: &Columns, by: Held, range: &Range<usize>) -> bool {
         let (view, sides) = (self.view, beyond(self.across));
         let length = range.len() as f64;
         let share = |flags: &Bits| flags.count(range.clone()) as f64 / length;
@@ -230,9 +268,6 @@ impl<'a> Candidate<'a> {
             && share(&columns.both) >= if by == Held::Thin && self.bay { LEAST_BOTH_BAY } else { LEAST_BOTH }
             && sides.into_iter().all(|side| seen(side) >= LEAST_SEEN)
             && (by == Held::Deep || sides.into_iter().all(|side| faced(side) >= LEAST_FACED))
-            && !barriers::across(view, self.across, on_map.clone()).any()
-            && !barriers::doors(view, sides, on_map.clone()).any()
-            && barriers::stops(view, self.across, on_map).is_empty()
     }
 }
 
