@@ -75,8 +75,10 @@ pub fn widest(strips: &[Strip]) -> f64 {
 /// then the ragged ones, the best first. And ragged ways over such as are too short by themselves, and what walls leave of
 /// others.
 pub fn find(evidence: &Evidence, views: &[Turned]) -> (Vec<Strip>, [Vec<Strip>; 2]) {
-    // Of few views one may be done long before another, which then has all threads.
-    let threads = if views.len() < evidence.threads { evidence.threads } else { 1 };
+    // Of few views one may be done long before another, which then has all threads; but of large ones each thread lays out
+    // rows, for which there is not room enough.
+    let is_shared = views.len() >= evidence.threads || views.iter().any(Turned::is_large);
+    let threads = if is_shared { evidence.threads.div_ceil(views.len().max(1)) } else { evidence.threads };
     let found = map_each(views.len(), evidence.threads, |n| {
         let family = Family::new(evidence, views, &views[n], &[]);
         let mut parts = family.candidates(threads, evidence.recall);
