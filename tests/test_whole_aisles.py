@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
+from pathlib import Path
+
 import numpy as np
 import numpy.typing as npt
 import pytest
+import shapely
 
 import groundplan
 
@@ -83,3 +87,13 @@ def test_racks_that_face_one_another_for_less_than_twice_their_distance_have_an_
     assert aisle["width"] == pytest.approx(apart * RESOLUTION, abs=0.3)
     assert aisle["axis"][0][1] == pytest.approx(20.0 - apart * RESOLUTION / 2, abs=0.2)
     assert aisle["confidence"] > 0.8
+
+
+@pytest.mark.parametrize("name", ["dis_b1", "lab_903", "radish_intel_lab_rendered", "radish_sdr_site_b"])
+def test_where_an_aisle_is_wider_or_narrower_there_is_no_second_one_within_it(name: str, shared: Path) -> None:
+    corridors = groundplan.survey(groundplan.read(shared / "maps" / f"{name}.yaml")).of_kind("corridor")
+    for ways in itertools.combinations(corridors, 2):
+        (ax, ay), (bx, by) = (np.subtract(*way["axis"]) / np.hypot(*np.subtract(*way["axis"])) for way in ways)
+        one, other = (shapely.Polygon(way["polygon"]) for way in ways)
+        if abs(ax * by - ay * bx) < 0.01:
+            assert one.intersection(other).area < 0.5 * min(one.area, other.area), [way["name"] for way in ways]

@@ -15,6 +15,8 @@ const ALIKE_RAGGED: f64 = 0.5;
 const APART: f64 = 3.0;
 /// Between them the floor is free but for this share.
 const CLUTTER: f64 = 0.1;
+/// A way lies within another when it shares more than this of its length, and of the narrower one's width.
+const WITHIN: f64 = 0.5;
 /// What stands so near to the sides, in widths, does not bar the way.
 const MARGIN: f64 = 0.1;
 
@@ -50,6 +52,30 @@ pub fn join(views: &[Turned], mut strips: Vec<Strip>, least: f64) -> Vec<Strip> 
         }
     }
     let kept: Vec<bool> = (0..strips.len()).map(|n| wholes.of(n as u32) as usize == n).collect();
+    let mut kept = kept.into_iter();
+    strips.retain(|_| kept.next().unwrap_or(false));
+    strips
+}
+
+/// The ways without those that lie for the most part within longer ones of their direction, which went on to what they
+/// meet past a place that is wider or narrower.
+pub fn apart(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
+    let placed = placed(views, strips.iter().map(Strip::place));
+    let lies_within = |n: usize, m: usize| {
+        let (own, other) = (&strips[n], &strips[m]);
+        let together = own.along[1].min(other.along[1]) - own.along[0].max(other.along[0]);
+        let [low, high] = shared(own, other);
+        let (length, longer) = (own.length(), other.length());
+        (longer > length || longer == length && m < n)
+            && together > WITHIN * length
+            && high - low > WITHIN * own.width().min(other.width())
+    };
+    let kept: Vec<bool> = (0..strips.len())
+        .map(|n| {
+            let Strip { direction, along, across, .. } = strips[n];
+            !placed[direction].touching(along, across).into_iter().any(|m| m != n && lies_within(n, m))
+        })
+        .collect();
     let mut kept = kept.into_iter();
     strips.retain(|_| kept.next().unwrap_or(false));
     strips

@@ -144,7 +144,7 @@ impl Plan {
         let gates = gates::find(evidence, look, views, &plan.strips, &plan.rows);
         let (known, more) = (plan.strips.len(), gates.len());
         plan.strips.extend(gates);
-        plan.strips = widths::alike(views, plan.strips);
+        plan.strips = joined::apart(views, widths::alike(views, plan.strips));
         if more > 0 || plan.strips.len() < known {
             plan = Self::new(views, plan.strips, threads);
         }
