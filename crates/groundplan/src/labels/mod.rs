@@ -12,7 +12,6 @@ mod family;
 mod frames;
 mod gates;
 mod grounds;
-mod heads;
 mod joined;
 mod junctions;
 mod legs;

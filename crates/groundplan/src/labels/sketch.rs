@@ -4,7 +4,6 @@
 use super::beside::{Beside, placed};
 use super::corridors::{self, ALONE, Strip};
 use super::gates;
-use super::heads;
 use super::joined;
 use super::junctions::{self, Meeting};
 use super::legs;
@@ -148,9 +147,6 @@ impl Plan {
         plan.strips = joined::apart(views, widths::alike(views, plan.strips));
         if more > 0 || plan.strips.len() < known {
             plan = Self::new(views, plan.strips, threads);
-        }
-        if let Some(more) = heads::with(views, &plan.strips, &plan.rows, evidence.parameters) {
-            plan = Self::new(views, more, threads);
         }
         plan.racks = plan.find_racks(views, on_legs, threads);
         let narrow = narrowed::past(views, &plan.strips, &plan.racks, evidence.parameters.labels_min_width);
