@@ -6,18 +6,16 @@ import itertools
 import math
 import random
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from _other_hard import Hard, hard, layout
 from _other_joined import Layout, Meeting
-from _other_map import BEAMS, Flags, Floats, cast, seen_parts, valued
+from _other_map import BEAMS, TYPES, Beams, Flags, Floats, Frame, Site, cast, seen_parts, valued
 from _other_plan import Point
 
 import groundplan
-from groundplan.maps import FREE, Map
+from groundplan.maps import FREE
 
 _PAD = 1.0  # metres of world and of map around the site
 _EVERY = 0.8  # metres between two scans
@@ -25,48 +23,9 @@ _SWAY = 0.15  # metres off a way's middle
 _BENT = 0.1  # metres that a straight piece of a bent line leaves it by
 _LEAST = 4.0  # metres of a direction's lines that must be seen
 _FLOOR, _OUT = 0.8, 1.5  # share of a crossing's floor, and of that so many metres out of it, that must be known
-_TYPES = {2: "L", 3: "T", 4: "X"}
 
 
-@dataclass(frozen=True)
-class HardSite:
-    """A map and its truth, in the format that `groundplan.evaluate.score` takes."""
-
-    measures: Hard
-    map: Map
-    truth: dict[str, Any]
-
-
-@dataclass(frozen=True)
-class _Frame:
-    """The site's place in the map: waves of drift along x and y, then a turn; (height, width) pixels, row 0 lowest."""
-
-    yaw: float
-    bend: float
-    waves: tuple[Point, Point]  # for each of x and y a wave number and a phase
-    low: Point
-    shape: tuple[int, int]
-    resolution: float
-
-    def to_map(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
-        (kx, px), (ky, py) = self.waves
-        x, y = x + self.bend * np.sin(ky * y + py), y + self.bend * np.sin(kx * x + px)
-        cos, sin = math.cos(self.yaw), math.sin(self.yaw)
-        return x * cos - y * sin, x * sin + y * cos
-
-    def point(self, p: Point) -> Point:
-        x, y = self.to_map(np.array(p[0]), np.array(p[1]))
-        return float(x), float(y)
-
-    def pixels(self, x: Floats, y: Floats) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], Flags]:
-        """Rows and columns of points of the site, and which of them the grid has."""
-        x, y = self.to_map(x, y)
-        column = np.floor((x - self.low[0]) / self.resolution).astype(np.int64)
-        row = np.floor((y - self.low[1]) / self.resolution).astype(np.int64)
-        return row, column, (column >= 0) & (row >= 0) & (column < self.shape[1]) & (row < self.shape[0])
-
-
-def hard_site(seed: int) -> HardSite:
+def hard_site(seed: int) -> Site:
     """The site of a seed, its map and its truth."""
     draw, goods = random.Random(seed + 77_000_000), np.random.default_rng(seed + 77_000_000)
     measured = hard(seed, draw)
@@ -78,21 +37,14 @@ def hard_site(seed: int) -> HardSite:
     frame = _frame(measured, low, high, draw)
     values = valued(measured.common.look, *_scanned(measured, made, (world, low, step), frame, goods))
     mapped = groundplan.from_array(np.ascontiguousarray(values[::-1]), measured.common.resolution, frame.low)
-    return HardSite(measured, mapped, _truth(made, frame, mapped.states[values] == FREE))
+    return Site(measured, mapped, _truth(made, frame, mapped.states[values] == FREE))
 
 
-def _frame(measured: Hard, low: Floats, high: Floats, draw: random.Random) -> _Frame:
+def _frame(measured: Hard, low: Floats, high: Floats, draw: random.Random) -> Frame:
     """Waves of one to two of the site's lengths, and the box of it all."""
     waves = [(2 * math.pi / draw.uniform(40, 80), draw.uniform(0, 2 * math.pi)) for _ in range(2)]
-    frame = _Frame(
-        measured.common.yaw, measured.bend, (waves[0], waves[1]), (0.0, 0.0), (0, 0), measured.common.resolution
-    )
-    corners = np.array([frame.point((x, y)) for x in (low[0], high[0]) for y in (low[1], high[1])])
-    least, most = corners.min(axis=0) - measured.bend, corners.max(axis=0) + measured.bend
-    columns, rows = np.ceil((most - least) / frame.resolution).astype(int).tolist()
-    return _Frame(
-        frame.yaw, frame.bend, frame.waves, (float(least[0]), float(least[1])), (rows, columns), frame.resolution
-    )
+    frame = Frame(measured.common.yaw, measured.common.resolution, measured.bend, (waves[0], waves[1]))
+    return frame.around([(x, y) for x in (low[0], high[0]) for y in (low[1], high[1])], measured.bend)
 
 
 def _world(made: Layout, low: Floats, high: Floats, step: float) -> Flags:
@@ -139,14 +91,13 @@ def _poses(measured: Hard, made: Layout, noise: np.random.Generator) -> Floats:
 
 
 def _scanned(
-    measured: Hard, made: Layout, world: tuple[Flags, Floats, float], frame: _Frame, noise: np.random.Generator
+    measured: Hard, made: Layout, world: tuple[Flags, Floats, float], frame: Frame, noise: np.random.Generator
 ) -> tuple[Floats, Floats]:
     """How often each pixel was hit and passed by the beams."""
     taken, low, step = world
     common = measured.common
     turn = np.linspace(0, 2 * math.pi, BEAMS, endpoint=False)
-    looks = np.arange(0.1, common.range, common.resolution * 0.7)
-    hits, passes = np.zeros(frame.shape), np.zeros(frame.shape)
+    beams = Beams(frame, common.range)
     for px, py in _poses(measured, made, noise):
         if taken[int((py - low[1]) / step), int((px - low[0]) / step)]:
             continue
@@ -157,25 +108,13 @@ def _scanned(
         cos, sin = np.cos(angles + askew), np.sin(angles + askew)
         is_hit = np.isfinite(ranges)
         ranges = np.where(is_hit, ranges, common.range) + is_hit * noise.normal(0, common.noise, BEAMS)
-        row, column, known = frame.pixels(px + off[0] + ranges * cos, py + off[1] + ranges * sin)
-        known &= is_hit
-        np.add.at(hits, (row[known], column[known]), 1)
-        beam, look = np.nonzero(looks < (ranges - common.resolution)[:, None])
-        row, column, known = frame.pixels(px + off[0] + looks[look] * cos[beam], py + off[1] + looks[look] * sin[beam])
-        # One beam passes a pixel once.
-        known[1:] &= (np.diff(row) != 0) | (np.diff(column) != 0) | (np.diff(beam) != 0)
-        flat = row[known] * frame.shape[1] + column[known]
-        passes += np.bincount(flat, minlength=passes.size).reshape(passes.shape)
-    return hits, passes
+        beams.put_down((px + off[0], py + off[1]), (cos, sin), ranges, is_hit)
+    return beams.hits, beams.passes
 
 
-def _truth(made: Layout, frame: _Frame, free: Flags) -> dict[str, Any]:
+def _truth(made: Layout, frame: Frame, free: Flags) -> dict[str, Any]:
     """What a survey should find: of lines and corridors what was seen, of the crossings those seen whole."""
-
-    def is_free(x: Floats, y: Floats) -> Flags:
-        row, column, inside = frame.pixels(x, y)
-        return np.array(inside & free[row * inside, column * inside])
-
+    is_free = frame.where(free)
     pieces = [(face.kind, part) for face in made.faces for part in seen_parts(face, is_free)]
     return {
         "directions": _directions([part for _, part in pieces], frame),
@@ -193,7 +132,7 @@ def _truth(made: Layout, frame: _Frame, free: Flags) -> dict[str, Any]:
         "junctions": [
             {
                 "at": frame.point(meeting.at),
-                "type": _TYPES[len(meeting.arms)],
+                "type": TYPES[len(meeting.arms)],
                 "arms": len(meeting.arms),
                 "observed": _is_seen(meeting, is_free),
             }
@@ -202,7 +141,7 @@ def _truth(made: Layout, frame: _Frame, free: Flags) -> dict[str, Any]:
     }
 
 
-def _directions(parts: list[tuple[Point, Point]], frame: _Frame) -> list[float]:
+def _directions(parts: list[tuple[Point, Point]], frame: Frame) -> list[float]:
     """The angles of the lines that were seen, each turned as the drift turns its lines in the mean (least squares)."""
     families: dict[float, list[tuple[Point, Point]]] = {}
     for p, q in parts:
@@ -230,7 +169,7 @@ def _directions(parts: list[tuple[Point, Point]], frame: _Frame) -> list[float]:
     return found
 
 
-def _straight(part: tuple[Point, Point], frame: _Frame) -> list[tuple[Point, Point]]:
+def _straight(part: tuple[Point, Point], frame: Frame) -> list[tuple[Point, Point]]:
     """A line in as few equal parts as the drift leaves straight."""
     (ax, ay), (bx, by) = part
     for count in range(1, 20):
@@ -241,7 +180,7 @@ def _straight(part: tuple[Point, Point], frame: _Frame) -> list[tuple[Point, Poi
     return [(p, q) for p, q in pieces]
 
 
-def _off(p: Point, q: Point, frame: _Frame) -> float:
+def _off(p: Point, q: Point, frame: Frame) -> float:
     """How far a line between two points leaves the straight one between where they are shown."""
     shares = np.linspace(0, 1, 21)
     x, y = frame.to_map(p[0] + shares * (q[0] - p[0]), p[1] + shares * (q[1] - p[1]))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from _other_hard import Hard
 from _other_plan import Box, Crossing, Face, Measures, Plan, Point, measures, plan, wide
 
 import groundplan
@@ -26,28 +27,39 @@ _EVERY = 0.1  # metres between two looks along a face
 _BEFORE = 0.3  # metres before it where floor must be seen ...
 _GAP, _PART = 3.8, 2.0  # ... but for gaps of so much, over so much, metres
 _SEEN, _OUT = 0.75, 1.5  # share of a crossing's floor, and of that so many metres out of it, that must be known
-_TYPES = {2: "L", 3: "T", 4: "X"}
+TYPES = {2: "L", 3: "T", 4: "X"}
 
 
 @dataclass(frozen=True)
 class Site:
     """A map and its truth, in the format that `groundplan.evaluate.score` takes."""
 
-    measures: Measures
+    measures: Measures | Hard
     map: Map
     truth: dict[str, Any]
 
 
 @dataclass(frozen=True)
-class _Frame:
-    """The plan's place in the map, and the map's grid: (height, width) pixels, row 0 lowest."""
+class Frame:
+    """The plan's place in the map: bent by waves along x and y, then turned; (height, width) pixels, row 0 lowest."""
 
     yaw: float
-    low: Point
-    shape: tuple[int, int]
     resolution: float
+    bend: float = 0.0  # metres that a wave is high
+    waves: tuple[Point, Point] = ((0.0, 0.0), (0.0, 0.0))  # for each of x and y a wave number and a phase
+    low: Point = (0.0, 0.0)
+    shape: tuple[int, int] = (0, 0)
+
+    def around(self, corners: Iterable[Point], border: float) -> Frame:
+        """With a grid that has these points of the plan and so many metres beyond them."""
+        points = np.array([self.point(p) for p in corners])
+        low, high = points.min(axis=0) - border, points.max(axis=0) + border
+        columns, rows = np.ceil((high - low) / self.resolution).astype(int).tolist()
+        return replace(self, low=(float(low[0]), float(low[1])), shape=(rows, columns))
 
     def to_map(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        (kx, px), (ky, py) = self.waves
+        x, y = x + self.bend * np.sin(ky * y + py), y + self.bend * np.sin(kx * x + px)
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)
         return x * cos - y * sin, x * sin + y * cos
 
@@ -58,9 +70,18 @@ class _Frame:
     def pixels(self, x: Floats, y: Floats) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], Flags]:
         """Rows and columns of points of the plan, and which of them the grid has."""
         x, y = self.to_map(x, y)
-        column = ((x - self.low[0]) / self.resolution).astype(np.int64)
-        row = ((y - self.low[1]) / self.resolution).astype(np.int64)
+        column = np.floor((x - self.low[0]) / self.resolution).astype(np.int64)
+        row = np.floor((y - self.low[1]) / self.resolution).astype(np.int64)
         return row, column, (column >= 0) & (row >= 0) & (column < self.shape[1]) & (row < self.shape[0])
+
+    def where(self, flags: Flags) -> Callable[[Floats, Floats], Flags]:
+        """Whether points of the plan lie on pixels that have a flag; none outside the map has."""
+
+        def is_so(x: Floats, y: Floats) -> Flags:
+            row, column, inside = self.pixels(x, y)
+            return np.array(inside & flags[row * inside, column * inside])
+
+        return is_so
 
 
 def site(seed: int, is_wide: bool = False) -> Site:
@@ -68,7 +89,8 @@ def site(seed: int, is_wide: bool = False) -> Site:
     draw, goods = random.Random(seed), np.random.default_rng(seed)
     measured = wide(draw) if is_wide else measures(draw)
     laid_out = plan(measured, draw, goods)
-    frame = _frame(measured, laid_out)
+    corners = [(x, y) for x in (-_PAD, laid_out.width + _PAD) for y in (-_PAD, laid_out.depth + _PAD)]
+    frame = Frame(measured.yaw, measured.resolution).around(corners, _BORDER)
     if measured.look == "drawn":
         greys = _drawn(measured, laid_out, frame)
     else:
@@ -77,16 +99,7 @@ def site(seed: int, is_wide: bool = False) -> Site:
     return Site(measured, made, _truth(laid_out, frame, made.states[greys] == FREE))
 
 
-def _frame(measured: Measures, laid_out: Plan) -> _Frame:
-    frame = _Frame(measured.yaw, (0.0, 0.0), (0, 0), measured.resolution)
-    width, depth = laid_out.width, laid_out.depth
-    corners = np.array([frame.point((x, y)) for x in (-_PAD, width + _PAD) for y in (-_PAD, depth + _PAD)])
-    low, high = corners.min(axis=0) - _BORDER, corners.max(axis=0) + _BORDER
-    columns, rows = np.ceil((high - low) / measured.resolution).astype(int).tolist()
-    return _Frame(measured.yaw, (float(low[0]), float(low[1])), (rows, columns), measured.resolution)
-
-
-def _drawn(measured: Measures, laid_out: Plan, frame: _Frame) -> npt.NDArray[np.uint8]:
+def _drawn(measured: Measures, laid_out: Plan, frame: Frame) -> npt.NDArray[np.uint8]:
     """As a draughtsman has it: what a pixel's middle is in or hardly beside."""
     v, u = np.mgrid[0 : frame.shape[0], 0 : frame.shape[1]] + 0.5
     x, y = frame.low[0] + u * frame.resolution, frame.low[1] + v * frame.resolution
@@ -107,7 +120,7 @@ def _drawn(measured: Measures, laid_out: Plan, frame: _Frame) -> npt.NDArray[np.
     return greys
 
 
-def _scanned(measured: Measures, laid_out: Plan, frame: _Frame, noise: np.random.Generator) -> tuple[Floats, Floats]:
+def _scanned(measured: Measures, laid_out: Plan, frame: Frame, noise: np.random.Generator) -> tuple[Floats, Floats]:
     """How often each pixel was hit and passed by the beams of a lidar that stood every metre along each aisle."""
     step = min(0.025, measured.resolution / 2)
     width, depth = laid_out.width, laid_out.depth
@@ -118,8 +131,7 @@ def _scanned(measured: Measures, laid_out: Plan, frame: _Frame, noise: np.random
     poses = [(float(x), y) for y in laid_out.aisles for x in np.arange(0.6, width - 0.5, 1.0)]
     poses += [(x, float(y)) for x in laid_out.crosses for y in np.arange(0.6, depth - 0.5, 1.0)]
     turn = np.linspace(0, 2 * math.pi, BEAMS, endpoint=False)
-    looks = np.arange(0.1, measured.range, measured.resolution * 0.7)
-    hits, passes = np.zeros(frame.shape), np.zeros(frame.shape)
+    beams = Beams(frame, measured.range)
     for px, py in poses:
         if world[int((py + _PAD) / step), int((px + _PAD) / step)]:
             continue
@@ -128,16 +140,8 @@ def _scanned(measured: Measures, laid_out: Plan, frame: _Frame, noise: np.random
         ranges = cast(world, (px + _PAD, py + _PAD), (cos, sin), step, measured.range)
         is_hit = np.isfinite(ranges)
         ranges = np.where(is_hit, ranges, measured.range) + is_hit * noise.normal(0, measured.noise, BEAMS)
-        row, column, known = frame.pixels(px + ranges * cos, py + ranges * sin)
-        known &= is_hit
-        np.add.at(hits, (row[known], column[known]), 1)
-        beam, look = np.nonzero(looks < (ranges - measured.resolution)[:, None])
-        row, column, known = frame.pixels(px + looks[look] * cos[beam], py + looks[look] * sin[beam])
-        # One beam passes a pixel once.
-        known[1:] &= (np.diff(row) != 0) | (np.diff(column) != 0) | (np.diff(beam) != 0)
-        flat = row[known] * frame.shape[1] + column[known]
-        passes += np.bincount(flat, minlength=passes.size).reshape(passes.shape)
-    return hits, passes
+        beams.put_down((px, py), (cos, sin), ranges, is_hit)
+    return beams.hits, beams.passes
 
 
 def cast(world: Flags, at: Point, beams: tuple[Floats, Floats], step: float, reach: float) -> Floats:
@@ -156,6 +160,29 @@ def cast(world: Flags, at: Point, beams: tuple[Floats, Floats], step: float, rea
     return ranges
 
 
+class Beams:
+    """How often each pixel was hit and passed by beams that reach so far, metres."""
+
+    def __init__(self, frame: Frame, reach: float) -> None:
+        self.frame = frame
+        self.hits, self.passes = np.zeros(frame.shape), np.zeros(frame.shape)
+        self._looks = np.arange(0.1, reach, frame.resolution * 0.7)
+
+    def put_down(self, at: Point, towards: tuple[Floats, Floats], ranges: Floats, is_hit: Flags) -> None:
+        """Add the beams of one place of the plan: where each goes, how far, and whether something is there."""
+        cos, sin = towards
+        row, column, known = self.frame.pixels(at[0] + ranges * cos, at[1] + ranges * sin)
+        known &= is_hit
+        np.add.at(self.hits, (row[known], column[known]), 1)
+        beam, look = np.nonzero(self._looks < (ranges - self.frame.resolution)[:, None])
+        far = self._looks[look]
+        row, column, known = self.frame.pixels(at[0] + far * cos[beam], at[1] + far * sin[beam])
+        # One beam passes a pixel once.
+        known[1:] &= (np.diff(row) != 0) | (np.diff(column) != 0) | (np.diff(beam) != 0)
+        flat = row[known] * self.frame.shape[1] + column[known]
+        self.passes += np.bincount(flat, minlength=self.passes.size).reshape(self.passes.shape)
+
+
 def valued(look: str, hits: Floats, passes: Floats) -> npt.NDArray[np.uint8]:
     """Three values by the share of beams that were hits, or the greys of log-odds that are held."""
     seen = hits + passes > 0
@@ -167,13 +194,9 @@ def valued(look: str, hits: Floats, passes: Floats) -> npt.NDArray[np.uint8]:
     return np.where(seen, np.round(255 / (1 + np.exp(odds))), 127).astype(np.uint8)
 
 
-def _truth(laid_out: Plan, frame: _Frame, free: Flags) -> dict[str, Any]:
+def _truth(laid_out: Plan, frame: Frame, free: Flags) -> dict[str, Any]:
     """What a survey should find: of walls and racks what floor was seen before, of the crossings those seen whole."""
-
-    def is_free(x: Floats, y: Floats) -> Flags:
-        row, column, inside = frame.pixels(x, y)
-        return np.array(inside & free[row * inside, column * inside])
-
+    is_free = frame.where(free)
     lines = [
         {"kind": face.kind, "p": frame.point(p), "q": frame.point(q)}
         for face in laid_out.faces
@@ -187,7 +210,7 @@ def _truth(laid_out: Plan, frame: _Frame, free: Flags) -> dict[str, Any]:
         "junctions": [
             {
                 "at": frame.point(crossing.at),
-                "type": _TYPES[len(crossing.arms)],
+                "type": TYPES[len(crossing.arms)],
                 "arms": len(crossing.arms),
                 "observed": _is_seen(crossing, is_free),
             }
