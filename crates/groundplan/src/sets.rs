@@ -25,6 +25,14 @@ impl Sets {
         member
     }
 
+    /// The same, of sets that others ask too.
+    pub fn name(&self, mut member: u32) -> u32 {
+        while self.0[member as usize] != member {
+            member = self.0[member as usize];
+        }
+        member
+    }
+
     /// Joins the set named `other` to the one named `to`.
     pub fn join(&mut self, to: u32, other: u32) {
         self.0[other as usize] = to;

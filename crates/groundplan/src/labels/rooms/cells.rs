@@ -6,6 +6,7 @@ use super::gaps::Bar;
 use super::leaves;
 use super::raster::Raster;
 use super::runs::{Run, Runs, runs_of};
+use crate::bands::flat_map_each;
 use crate::bits::{WORD, lowest};
 use crate::sets::Sets;
 use std::collections::BinaryHeap;
@@ -49,7 +50,7 @@ pub struct Rules {
 }
 
 /// Cuts the free space along all bars and joins what belongs together.
-pub fn find(raster: &Raster, bars: &[Bar], rules: &Rules) -> Cells {
+pub fn find(raster: &Raster, bars: &[Bar], rules: &Rules, threads: usize) -> Cells {
     let lines: Vec<Vec<usize>> = bars.iter().map(|bar| pixels_of(raster, bar)).collect();
     let mut cut: Vec<usize> = lines.iter().flatten().copied().collect();
     cut.sort_unstable();
@@ -60,7 +61,7 @@ pub fn find(raster: &Raster, bars: &[Bar], rules: &Rules) -> Cells {
     drop(numbers);
     let stretches = stretches(raster, bars, &lines, &pieces);
     let mut joining = Joining::new(raster, bars, rules, &stretches, pieces, count);
-    joining.join_open();
+    joining.join_open(threads);
     joining.join_unwalled();
     joining.join_beyond_leaves();
     let roots: Vec<u32> = (0..joining.wall.len() as u32).map(|n| joining.sets.of(n)).collect();
@@ -219,8 +220,9 @@ impl<'a> Joining<'a> {
 
     /// Joins across the most open stretch, again and again, while there is one that parts nothing. A set that grows
     /// only makes its openings less open, so that each is measured anew only when its turn comes.
-    fn join_open(&mut self) {
-        let mut queue: BinaryHeap<Openness> = (0..self.stretches.len()).map(|n| self.measure(n)).collect();
+    fn join_open(&mut self, threads: usize) {
+        let all = flat_map_each(self.stretches.len(), threads, |n| [self.measure(n)]);
+        let mut queue = BinaryHeap::from(all);
         while let Some(most) = queue.pop() {
             let sides = self.sides(most.stretch);
             if sides[0] == sides[1] {
@@ -321,8 +323,8 @@ impl<'a> Joining<'a> {
     }
 
     /// The width of a stretch over the width of the space on its tighter side.
-    fn measure(&mut self, stretch: usize) -> Openness {
-        let sides = self.sides(stretch);
+    fn measure(&self, stretch: usize) -> Openness {
+        let sides = self.stretches[stretch].pieces.map(|piece| self.sets.name(piece));
         let ages = sides.map(|side| self.age[side as usize]);
         let Stretch { bar, pixels, .. } = &self.stretches[stretch];
         // A stretch of a slanted bar has fewer pixels than it is long.
@@ -342,22 +344,25 @@ impl<'a> Joining<'a> {
 
     /// How wide a set is beyond a stretch, at its widest within [`DEPTH`], measured along the bar, pixels; or as much
     /// as is enough.
-    fn beyond(&mut self, stretch: usize, (set, side): (u32, f64), enough: f64) -> f64 {
+    fn beyond(&self, stretch: usize, (set, side): (u32, f64), enough: f64) -> f64 {
         let Stretch { bar, pixels, .. } = &self.stretches[stretch];
         let [ux, uy] = self.bars[*bar].heading();
         let [x, y] = self.raster.place(pixels[pixels.len() / 2]);
         let deepest = self.raster.pixels(DEPTH);
+        // Mostly the piece is the one that was asked for last.
+        let mut last = (0, false);
         // Walls' thickness in a doorway counts only for the doorway's own piece, `own`.
         let mut is_in = |place: [f64; 2], own: Option<u32>| {
             let pixel = self.raster.at(place)?;
             let number = self.pieces.at(pixel);
-            let inside = match number {
-                0 => self.raster.free.get(pixel),
-                _ => {
-                    self.sets.of(number) == set && (own.is_none_or(|own| own == number) || !self.small[number as usize])
-                }
-            };
-            inside.then_some(number)
+            if number == 0 {
+                return self.raster.free.get(pixel).then_some(number);
+            }
+            if number != last.0 {
+                last = (number, self.sets.name(number) == set);
+            }
+            let counts = || own.is_none_or(|own| own == number) || !self.small[number as usize];
+            (last.1 && counts()).then_some(number)
         };
         let mut widest = 0.0_f64;
         let mut depth = STEP;

@@ -107,7 +107,7 @@ pub fn find(
     });
     let parameters = evidence.parameters;
     let rules = Rules { openness: parameters.rooms_openness, least_area: parameters.rooms_min_area };
-    let cells = cells::find(raster, &bars, &rules);
+    let cells = cells::find(raster, &bars, &rules, evidence.threads);
     let (regions, numbers) = regions::find(evidence, space, cells.regions, racked, squares);
     let mut order = vec![0; regions.len() + 1];
     for (n, region) in regions.iter().enumerate() {

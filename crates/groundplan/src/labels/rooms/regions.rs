@@ -7,6 +7,7 @@ use super::fill::fill_runs;
 use super::raster::Raster;
 use super::runs::{Run, Runs};
 use super::{Racked, Space, Width};
+use crate::bands::map_each;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
@@ -155,11 +156,9 @@ pub fn find(
         }
     }
     let counts: Vec<usize> = std::iter::once(0).chain(regions.iter().map(|region| region.pixels)).collect();
-    for (region, pixels) in
-        regions.iter_mut().zip(samples(&numbers, |n| numbers.all[n].number, &counts, SAMPLES).into_iter().skip(1))
-    {
-        region.place = middle(evidence, raster, &pixels, squares);
-    }
+    let pixels = samples(&numbers, |n| numbers.all[n].number, &counts, SAMPLES);
+    let places = map_each(regions.len(), evidence.threads, |n| middle(evidence, raster, &pixels[n + 1], squares));
+    regions.iter_mut().zip(places).for_each(|(region, place)| region.place = place);
     sort_by_rows(&mut regions);
     (regions, numbers)
 }
