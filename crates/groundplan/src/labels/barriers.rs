@@ -1,6 +1,5 @@
 //! Walls across a strip that leave no more than a door: a corridor ends there, and a room behind is no part of it.
 
-use super::runs::runs;
 use super::shares::Shares;
 use super::turned::Turned;
 use crate::bits::Bits;
@@ -96,29 +95,35 @@ pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize>
     if !view.barred_where(range.clone(), place(0), place(count), |barred| barred > 0.0).any() {
         return found;
     }
-    // For how many columns each place across has been free.
+    // For how many columns each place across has been free, and what is reached there.
     let mut free_for = vec![side; count];
     let mut reached = vec![true; count];
     let row = |n: usize| view.barred_where(range.clone(), place(n), place(n) + view.cell, |barred| barred > 0.0);
     let barred: Vec<Bits> = (0..count).map(row).collect();
-    let from = range.start;
-    for c in range {
-        for (columns, barred) in free_for.iter_mut().zip(&barred) {
-            *columns = if barred.get(c - from) { 0 } else { *columns + 1 };
-        }
-        let free: Vec<bool> = free_for.iter().map(|columns| *columns >= side).collect();
-        let mut next = vec![false; count];
-        for (from, to) in runs(&free, true) {
-            if to - from >= side && reached[from..to].contains(&true) {
-                next[from..to].fill(true);
+    let mut some = Bits::new(range.len());
+    for barred in &barred {
+        some |= barred;
+    }
+    // So far behind all that stands there it is as if nothing did.
+    for near in some.joined(0..range.len(), side - 1) {
+        for c in near.start..(near.end + side).min(range.len()) {
+            for (columns, barred) in free_for.iter_mut().zip(&barred) {
+                *columns = if barred.get(c) { 0 } else { *columns + 1 };
+            }
+            let (mut from, mut gets_on) = (0, false);
+            for alike in free_for.chunk_by(|one, next| (*one >= side) == (*next >= side)) {
+                let own = &mut reached[from..from + alike.len()];
+                let is_reached = alike[0] >= side && alike.len() >= side && own.contains(&true);
+                own.fill(is_reached);
+                gets_on |= is_reached;
+                from += alike.len();
+            }
+            if !gets_on {
+                found.push(range.start + c);
+                free_for.fill(side);
+                reached.fill(true);
             }
         }
-        if !next.contains(&true) {
-            found.push(c);
-            free_for.fill(side);
-            next.fill(true);
-        }
-        reached = next;
     }
     found
 }

@@ -8,6 +8,7 @@ use super::runs::{close, runs};
 use super::turned::Turned;
 use crate::bands::flat_map_each;
 use crate::bits::Bits;
+use std::cell::OnceCell;
 use std::ops::Range;
 
 /// Floor shows before a block's faces from so far to so far off, metres.
@@ -61,15 +62,44 @@ struct Block {
     taken: f64,
 }
 
+/// What may be a block, whatever ways there are beside it: found once, though racks are looked for again and again.
+pub struct Standing<'a> {
+    views: &'a [Turned],
+    threads: usize,
+    /// With floor on both sides, and with floor on one at least.
+    free: OnceCell<Vec<Row>>,
+    leaning: OnceCell<Vec<Row>>,
+}
+
+impl<'a> Standing<'a> {
+    pub fn new(views: &'a [Turned], threads: usize) -> Self {
+        Self { views, threads, free: OnceCell::new(), leaning: OnceCell::new() }
+    }
+
+    fn before(&self, fronts: &[Fronts]) -> Vec<Row> {
+        let views = || self.views.iter();
+        let found =
+            fronts.iter().flat_map(|&fronts| views().flat_map(move |view| candidates(view, fronts, self.threads)));
+        apart(self.views, found.collect())
+    }
+
+    fn free(&self) -> &[Row] {
+        self.free.get_or_init(|| self.before(&[[true, true]]))
+    }
+
+    fn leaning(&self) -> &[Row] {
+        self.leaning.get_or_init(|| self.before(&[[true, false], [false, true]]))
+    }
+}
+
 /// The blocks of a kind that stand in rows. Rows of racks that are known already count for their kind.
-pub fn find(views: &[Turned], known: &[Row], threads: usize) -> Vec<Row> {
-    let standing = |fronts: Fronts| views.iter().flat_map(|view| candidates(view, fronts, threads)).collect();
-    let found = apart(views, standing([true, true]));
+pub fn find(views: &[Turned], known: &[Row], standing: &Standing) -> Vec<Row> {
+    let found = standing.free();
     let count = found.len();
-    let others = overlapping(views, known, &found);
+    let others = overlapping(views, known, found);
     let others = known.iter().zip(&others).filter(|(_, blocks)| blocks.is_empty()).map(|(row, _)| row.clone());
     let block = |row: Row| Block { taken: inner(&views[row.direction], &row), row };
-    let blocks: Vec<Block> = found.into_iter().chain(others).map(block).collect();
+    let blocks: Vec<Block> = found.iter().cloned().chain(others).map(block).collect();
     let kinds = Kinds::new(views, &blocks);
     let racks = blocks[..count].iter().filter(|block| kinds.are_racks(block));
     let mut racks: Vec<Row> = racks.map(|block| block.row.clone()).collect();
@@ -77,8 +107,7 @@ pub fn find(views: &[Turned], known: &[Row], threads: usize) -> Vec<Row> {
         return racks;
     }
     // What is like one of them and stands beside it is one too, be the floor on its other side not seen.
-    let leaning = [[true, false], [false, true]].into_iter().flat_map(standing).collect();
-    let mut leaning = apart(views, leaning);
+    let mut leaning = standing.leaning().to_vec();
     let is_like = |row: &Row, rack: &Row| beside(row, rack) && are_alike(rack, row) && is_as_long(row, rack);
     let placed = placed(views, racks.iter().map(Row::place));
     leaning.retain(|row| standing_near(&placed, row).into_iter().any(|n| is_like(row, &racks[n])));

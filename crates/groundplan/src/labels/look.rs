@@ -97,17 +97,26 @@ impl<'a> Look<'a> {
             let end = if is_inside { all.end.min(n + SIDE.div_ceil(per)) } else { n + 1 };
             cells[n..end].fill(0);
             for start in starts {
-                let mut place = after(*start, step, n * per);
-                for cell in &mut cells[n..end] {
-                    for _ in 0..per {
-                        let [x, y] = place.map(|p| (p >> BITS) as usize);
-                        let pixel = self.rows.get(y).and_then(|row| row.get(x));
-                        *cell += pixel.map_or(BLOCKED, |&value| self.samples[usize::from(value)]);
-                        place = [place[0] + step[0], place[1] + step[1]];
-                    }
+                let (place, cells) = (after(*start, step, n * per), &mut cells[n..end]);
+                match per {
+                    1 => self.add::<1>(place, step, cells),
+                    2 => self.add::<2>(place, step, cells),
+                    _ => self.add::<LANES>(place, step, cells),
                 }
             }
             n = end;
+        }
+    }
+
+    /// Adds to each cell what lies at so many samples of a lane.
+    fn add<const PER: usize>(&self, mut place: [i64; 2], step: [i64; 2], cells: &mut [u8]) {
+        for cell in cells {
+            for _ in 0..PER {
+                let [x, y] = place.map(|p| (p >> BITS) as usize);
+                let pixel = self.rows.get(y).and_then(|row| row.get(x));
+                *cell += pixel.map_or(BLOCKED, |&value| self.samples[usize::from(value)]);
+                place = [place[0] + step[0], place[1] + step[1]];
+            }
         }
     }
 

@@ -27,27 +27,45 @@ const FUNDAMENTAL: f64 = 0.7;
 /// Steps to either side of a lag over which it is the strongest.
 const TOP: usize = 4;
 
+/// A speck on a line.
+struct Speck {
+    /// In steps along the line.
+    place: i32,
+    /// The column that it is in, and what is not free on either side of the line before that and up to its end.
+    column: usize,
+    sums: [[f64; 2]; 2],
+}
+
+impl Speck {
+    /// Steps to one that follows.
+    fn lag(&self, other: &Self) -> usize {
+        (other.place - self.place) as usize
+    }
+}
+
 /// Distance from post to post along the lines of the view's direction, metres, where there is a pattern: the first
 /// strong peak of the specks' autocorrelation, summed over the lines.
 pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     let last = (LAGS.1 / STEP) as usize;
     let first = (LAGS.0 / STEP) as usize;
-    let mut sums = vec![0.0; 2 * (last + BASE) + 1];
+    let lags = 2 * (last + BASE) + 1;
+    let mut sums = vec![0.0; lags];
     for (offset, places) in specks(evidence, view) {
         if places.len() < FEWEST {
             continue;
         }
         let beside = [-1.0, 1.0].map(|side| taken(view, offset, side));
-        let columns: Vec<usize> =
-            places.iter().map(|&step| view.column(view.start[0] + f64::from(step) * STEP)).collect();
-        for (n, &place) in places.iter().enumerate() {
-            for (other, &column) in places[n + 1..].iter().zip(&columns[n + 1..]) {
-                let lag = (other - place) as usize;
-                if lag >= sums.len() {
-                    break;
-                }
-                if lag >= first - BASE && is_face(&beside, columns[n], column + 1) {
-                    sums[lag] += 1.0;
+        let speck = |&place: &i32| {
+            let column = view.column(view.start[0] + f64::from(place) * STEP);
+            Speck { place, column, sums: [column, column + 1].map(|n| beside.each_ref().map(|sums| sums[n])) }
+        };
+        let specks: Vec<Speck> = places.iter().map(speck).collect();
+        let mut next = 0;
+        for one in &specks {
+            next += specks[next..].iter().take_while(|other| one.lag(other) < first - BASE).count();
+            for other in specks[next..].iter().take_while(|other| one.lag(other) < lags) {
+                if is_face(one, other) {
+                    sums[one.lag(other)] += 1.0;
                 }
             }
         }
@@ -112,8 +130,9 @@ fn taken(view: &Turned, offset: f64, side: f64) -> Vec<f64> {
     std::iter::once(0.0).chain(sums).collect()
 }
 
-/// True when a row lies on one side of the line from one column to before another, and free floor on the other.
-fn is_face(beside: &[Vec<f64>; 2], from: usize, to: usize) -> bool {
-    let [one, two] = [0, 1].map(|n| (beside[n][to] - beside[n][from]) / (to - from) as f64);
-    one.min(two) <= FACE.0 && one.max(two) >= FACE.1
+/// True when a row lies on one side of the line from one speck to another, and free floor on the other.
+fn is_face(one: &Speck, other: &Speck) -> bool {
+    let columns = (other.column + 1 - one.column) as f64;
+    let [left, right] = [0, 1].map(|side| (other.sums[1][side] - one.sums[0][side]) / columns);
+    left <= FACE.0 && right >= FACE.1 || right <= FACE.0 && left >= FACE.1
 }

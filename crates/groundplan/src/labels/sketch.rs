@@ -2,6 +2,7 @@
 //! that may be a door.
 
 use super::beside::{Beside, placed};
+use super::blocks::Standing;
 use super::corridors::{self, ALONE, Strip};
 use super::gates;
 use super::joined;
@@ -133,12 +134,13 @@ impl Plan {
         let found = joined::join(views, found, least);
         let found = gates::without_bays(evidence, look, views, found);
         let threads = evidence.threads;
+        let standing = Standing::new(views, threads);
         let mut plan = Self::new(views, found, threads);
         // What was too short to stay bars no way whose sides are no lines.
         plan = plan.with(views, &over, least, threads);
         // Where racks stand and an aisle opens into it, a way that ends at walls is no part of a room.
         let cut: Vec<Strip> = cut.into_iter().filter(|way| is_opened_into(views, way, &plan.strips)).collect();
-        if !cut.is_empty() && !plan.find_racks(views, on_legs, threads).is_empty() {
+        if !cut.is_empty() && !plan.find_racks(views, on_legs, &standing, threads).is_empty() {
             plan = plan.with(views, &cut, least, threads);
         }
         let gates = gates::find(evidence, look, views, &plan.strips, &plan.rows);
@@ -148,11 +150,11 @@ impl Plan {
         if more > 0 || plan.strips.len() < known {
             plan = Self::new(views, plan.strips, threads);
         }
-        plan.racks = plan.find_racks(views, on_legs, threads);
+        plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         let narrow = narrowed::past(views, &plan.strips, &plan.racks, evidence.parameters.labels_min_width);
         if narrow != plan.strips {
             plan = Self::new(views, narrow, threads);
-            plan.racks = plan.find_racks(views, on_legs, threads);
+            plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }
         plan
     }
@@ -166,8 +168,8 @@ impl Plan {
         Self::new(views, joined::join(views, [self.strips, more].concat(), least), threads)
     }
 
-    fn find_racks(&self, views: &[Turned], on_legs: &[Row], threads: usize) -> Vec<Row> {
-        whole::find(views, &self.strips, &self.extents, [&self.rows, on_legs], threads)
+    fn find_racks(&self, views: &[Turned], on_legs: &[Row], standing: &Standing, threads: usize) -> Vec<Row> {
+        whole::find(views, &self.strips, &self.extents, [&self.rows, on_legs], standing, threads)
     }
 
     fn new(views: &[Turned], strips: Vec<Strip>, threads: usize) -> Self {

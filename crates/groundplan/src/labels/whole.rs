@@ -3,7 +3,7 @@
 
 use super::at_walls;
 use super::beside::placed;
-use super::blocks::{self, are_alike, beside, standing_near};
+use super::blocks::{self, Standing, are_alike, beside, standing_near};
 use super::corridors::Strip;
 use super::racks::{self, Crossings, Row, SHORTEST, heaviest};
 use super::turned::Turned;
@@ -37,6 +37,7 @@ pub fn find(
     strips: &[Strip],
     extents: &[[f64; 2]],
     [rows, on_legs]: [&[Row]; 2],
+    standing: &Standing,
     threads: usize,
 ) -> Vec<Row> {
     let mut known = without_walls(views, rows);
@@ -53,7 +54,7 @@ pub fn find(
         Some(if row.between.is_some() { followed(view, &crossings, &row) } else { row })
     };
     let found: Vec<Row> = known.iter().filter_map(whole).collect();
-    let mut blocks = blocks::find(views, &found, threads);
+    let mut blocks = blocks::find(views, &found, standing);
     let met = blocks::overlapping(views, &blocks, on_legs);
     let mut met = met.into_iter();
     blocks.retain(|_| met.next().is_some_and(|racks| racks.is_empty()));

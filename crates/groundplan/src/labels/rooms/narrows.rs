@@ -122,7 +122,9 @@ impl<'a> Window<'a> {
         let least = (NARROW * NARROW * self.narrows[0]).ceil().max(1.0) as u32;
         for block in self.blocks.by_clearance(least) {
             let block = block as usize;
-            let around = self.blocks.around(block).map(|beside| basins[beside]);
+            let three = |middle: usize| <[u32; 3]>::try_from(&basins[middle - 1..middle + 2]).unwrap_or_default();
+            let [below, own, above] = [block - self.blocks.width, block, block + self.blocks.width].map(three);
+            let around = [below[0], below[1], below[2], own[0], own[2], above[0], above[1], above[2]];
             // Mostly all are of one.
             let most = around.into_iter().fold(0, u32::max);
             let others: u32 = around.iter().map(|&basin| u32::from(basin != 0 && basin != most)).sum();
