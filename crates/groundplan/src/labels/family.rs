@@ -20,7 +20,7 @@ const MISSING: f64 = 2.1;
 const DENSE: f64 = 0.6;
 /// What aisles open into side by side, so many at least, is so many times as wide as they are.
 const LEAST_MOUTHS: usize = 2;
-const LED_TO: f64 = 0.65;
+pub const LED_TO: f64 = 0.65;
 /// And so much of its side between them has structure on it.
 const BETWEEN: f64 = 0.5;
 /// So many columns of the strips above lines are worth a thread's while.

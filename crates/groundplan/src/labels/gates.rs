@@ -22,6 +22,8 @@ const EXPECTED: (f64, f64) = (0.05, 0.005);
 /// Where posts recur along the rows, what crosses them is no more than so many times as long as the shorter of the two
 /// corridors beside a row: short ones between the goods of racks do not make bays of the aisles.
 const LONGER: f64 = 4.0;
+/// Uprights leave so much of a strip that goes on between them.
+const LEFT: f64 = 0.5;
 /// What goes on so far beyond the rows, metres, is a way there.
 const BEYOND: f64 = 2.0;
 
@@ -97,17 +99,48 @@ fn up_to_walls(views: &[Turned], strips: &[Strip], placed: &[Beside], widest: f6
 }
 
 /// The strips without what of them leads through bays.
-pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
+pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
+    let mut crossed = crossed(evidence, look, views, &strips);
+    let left: Vec<_> = strips.iter().zip(&crossed).map(|(strip, crossed)| left_between(strip, crossed)).collect();
+    if left.iter().any(Option::is_some) {
+        for (strip, left) in strips.iter_mut().zip(left) {
+            strip.across = left.unwrap_or(strip.across);
+        }
+        crossed = self::crossed(evidence, look, views, &strips);
+    }
+    strips.into_iter().zip(crossed).flat_map(|(strip, crossed)| ways(strip, crossed)).collect()
+}
+
+/// What uprights of the rows that a strip crosses leave of it, where they stand in it in most of them: a line along it was
+/// no side of it, but that of what stands in other rows.
+fn left_between(strip: &Strip, crossed: &[Crossed]) -> Option<[f64; 2]> {
+    let within: Vec<_> = crossed.iter().filter(|row| !row.at_end).collect();
+    let open = within.iter().filter(|row| row.open).count();
+    if within.len() < 2 || 2 * open >= within.len() {
+        return None;
+    }
+    let both = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].min(b[1])];
+    let common = within.iter().fold(vec![strip.across], |common, row| {
+        let shared = common.iter().flat_map(|&one| row.between.iter().map(move |&two| both(one, two)));
+        shared.filter(|ends| ends[1] - ends[0] >= WIDTH.0).collect()
+    });
+    let width = |ends: &[f64; 2]| ends[1] - ends[0];
+    let left = common.into_iter().max_by(|a, b| width(a).total_cmp(&width(b)))?;
+    (width(&left) >= LEFT * strip.width()).then_some(left)
+}
+
+/// The rows that each strip crosses.
+fn crossed(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]) -> Vec<Vec<Crossed>> {
     let mut crossed: Vec<Vec<Crossed>> = vec![Vec::new(); strips.len()];
     // Where a direction does not tell its own bays, they are as those of the others.
     let common = views.iter().find_map(|view| view.pitch);
     let placed = placed(views, strips.iter().map(Strip::place));
-    let widest = corridors::widest(&strips);
+    let widest = corridors::widest(strips);
     for view in views.iter().filter(|_| common.is_some()) {
         let Some(other) = crossing(views, view.direction) else { continue };
         // The rows as they were if nothing led across them.
         let is_aisle = |n: &usize| {
-            strips[*n].direction == view.direction && !strips[*n].bays && !racks::is_within_row(&strips, &placed, *n)
+            strips[*n].direction == view.direction && !strips[*n].bays && !racks::is_within_row(strips, &placed, *n)
         };
         let aisles: Vec<Strip> = (0..strips.len()).filter(is_aisle).map(|n| strips[n].clone()).collect();
         let extents: Vec<[f64; 2]> = aisles.iter().map(|strip| strip.along).collect();
@@ -115,21 +148,21 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], strips: 
         let crossing = |row: &Row| -> Vec<(usize, Crossed)> {
             let Some(between) = row.between else { return Vec::new() };
             let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, view.pitch.or(common));
-            let ways = columns.ways();
+            let (ways, open) = (columns.ways(), columns.open());
             let aisles = between.map(|n| &aisles[n]);
             // Then the rows might as well be what lies between two ways across the rows.
             let shorter = aisles.iter().map(|aisle| aisle.length()).fold(f64::INFINITY, f64::min);
             let times = if view.pitch.is_some() { LONGER } else { 1.0 };
             let near = leading_across([view, other], &placed, row, widest).into_iter();
             let judged = near.filter(|&n| strips[n].length() < times * shorter);
-            let cross = |n: usize| cross([view, other], row, (&columns, &ways), &strips[n], aisles);
+            let cross = |n: usize| cross([view, other], row, (&columns, &ways, &open), &strips[n], aisles);
             judged.filter_map(|n| cross(n).map(|crossed| (n, crossed))).collect()
         };
         for (n, row) in flat_map_each(rows.len(), evidence.threads, |n| crossing(&rows[n])) {
             crossed[n].push(row);
         }
     }
-    strips.into_iter().zip(crossed).flat_map(|(strip, crossed)| ways(strip, crossed)).collect()
+    crossed
 }
 
 /// Of strips by their directions and places those along another direction that may lead across a row; none is wider than
@@ -146,7 +179,7 @@ pub fn leading_across([view, other]: [&Turned; 2], placed: &[Beside], row: &Row,
 }
 
 /// A row that a strip leads across: in the strip's own places, and whether there is a way.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Crossed {
     /// From the middle of the one corridor along the row to that of the other.
     along: [f64; 2],
@@ -160,13 +193,15 @@ struct Crossed {
     at_end: bool,
     /// Where nothing stands in the row between the strip's sides: where else it is so.
     free: Option<Free>,
+    /// From where to where nothing stands in the row within the strip, across.
+    between: Vec<[f64; 2]>,
 }
 
 /// What a strip finds where it crosses a row; nothing where it ends before.
 fn cross(
     [view, other]: [&Turned; 2],
     row: &Row,
-    (columns, ways): (&Columns, &[[f64; 2]]),
+    (columns, ways, open): (&Columns, &[[f64; 2]], &[[f64; 2]]),
     strip: &Strip,
     between: [&Strip; 2],
 ) -> Option<Crossed> {
@@ -187,6 +222,7 @@ fn cross(
     let at_end = sides[0] <= row.along[0] + view.cell || sides[1] >= row.along[1] - view.cell;
     let way = if at_end { columns.may_end_at(sides) } else { ways.iter().any(|way| way[0] < u && u < way[1]) };
     let free = columns.is_free(sides).then(|| columns.free_elsewhere(sides));
+    let across = |u: f64| other.place(view.to_map([u, middle]))[1];
     let along_of = |places: [f64; 2]| sorted(places.map(along));
     Some(Crossed {
         along: along_of(between.map(Strip::middle)),
@@ -195,6 +231,7 @@ fn cross(
         open: way || passes,
         at_end,
         free,
+        between: open.iter().map(|&ends| sorted(ends.map(across))).collect(),
     })
 }
 

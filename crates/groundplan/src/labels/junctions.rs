@@ -311,7 +311,7 @@ fn sign(side: usize) -> f64 {
 }
 
 /// Where what closes a strip so far beyond one of its ends begins.
-fn closed(view: &Turned, strip: &Strip, side: usize, look: f64) -> Option<f64> {
+pub fn closed(view: &Turned, strip: &Strip, side: usize, look: f64) -> Option<f64> {
     let sign = sign(side);
     let cells = |metres: f64| (metres / view.cell).ceil() as i64;
     let last = view.size[0] as i64 - 1;

@@ -12,6 +12,7 @@ mod family;
 mod frames;
 mod gates;
 mod grounds;
+mod heads;
 mod joined;
 mod junctions;
 mod legs;

@@ -146,7 +146,7 @@ impl Short {
 }
 
 /// True when two strips share so much of their width that one of them is too much.
-fn is_beside(one: &Strip, two: &Strip) -> bool {
+pub fn is_beside(one: &Strip, two: &Strip) -> bool {
     let shared = one.across[1].min(two.across[1]) - one.across[0].max(two.across[0]);
     let together = one.along[1].min(two.along[1]) - one.along[0].max(two.along[0]);
     together > 0.0 && shared > SHARED * one.width().min(two.width())

@@ -114,6 +114,14 @@ impl<'a> Columns<'a> {
         runs(&open, true).into_iter().map(|(from, to)| [self.place(from), self.place(to)]).collect()
     }
 
+    /// How far from its lower end, or from its upper one, the first of it stands, metres; nothing where nothing does.
+    pub fn first_stop(&self, from_low: bool) -> Option<f64> {
+        let count = self.blocked.len();
+        let stop =
+            if from_low { (0..count).find(|&n| self.stops(n)) } else { (0..count).rev().find(|&n| self.stops(n)) };
+        stop.map(|n| if from_low { n } else { count - 1 - n } as f64 * self.view.cell)
+    }
+
     /// True when what is known to be a way elsewhere goes on through the row: it is wider than a bay, and free.
     pub fn lets_through(&self, sides: [f64; 2]) -> bool {
         self.pitch.is_some_and(|pitch| sides[1] - sides[0] > BAY * pitch) && self.is_free(sides)

@@ -5,6 +5,7 @@ use super::beside::{Beside, placed};
 use super::blocks::Standing;
 use super::corridors::{self, ALONE, Strip};
 use super::gates;
+use super::heads;
 use super::joined;
 use super::junctions::{self, Meeting};
 use super::legs;
@@ -149,6 +150,9 @@ impl Plan {
         plan.strips = joined::apart(views, widths::alike(views, plan.strips));
         if more > 0 || plan.strips.len() < known {
             plan = Self::new(views, plan.strips, threads);
+        }
+        if let Some(more) = heads::with(evidence, look, views, &plan.strips, &plan.rows) {
+            plan = Self::new(views, more, threads);
         }
         plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         let narrow = narrowed::past(views, &plan.strips, &plan.racks, evidence.parameters.labels_min_width);

@@ -193,8 +193,7 @@ impl<'a> Through<'a> {
     }
 
     fn is_way(&self, common: &Common, widths: &[Widths]) -> bool {
-        let is_floor =
-            |seen: &Seen| common.width() > AT_WALL.0.min(AT_WALL.1 * seen.beside) && seen.is_left(common.ends);
+        let is_floor = |seen: &Seen| common.width() > widest_at_wall(seen.beside) && seen.is_left(common.ends);
         if common.rows.iter().any(|&n| is_floor(&self.rows[n])) {
             return false;
         }
@@ -216,6 +215,11 @@ impl<'a> Through<'a> {
         let (first, last) = (common.rows[0], common.rows[common.rows.len() - 1]);
         !self.above[last].iter().chain(&self.below[first]).any(|&n| self.rows[n].holds(middle))
     }
+}
+
+/// How wide a way between the ends of rows and a wall may be, by how wide those along the rows are, metres.
+pub fn widest_at_wall(beside: f64) -> f64 {
+    AT_WALL.0.min(AT_WALL.1 * beside)
 }
 
 /// How much two stretches share.

@@ -1,0 +1,204 @@
+//! Ways along a wall before the heads of rows: where rows end each at its own place, what lies between them and the wall
+//! has no line for its other side, and yet the aisles between the rows lead there.
+
+use super::Evidence;
+use super::corridors::{Strip, UNTOLD};
+use super::family;
+use super::gates::crossing;
+use super::junctions;
+use super::look::Look;
+use super::racks::Row;
+use super::ragged;
+use super::sections::Columns;
+use super::through;
+use super::turned::Turned;
+use crate::grid::Frame;
+use crate::parameters::Parameters;
+use std::collections::BTreeMap;
+
+/// An aisle is looked along so far beyond its end for the wall, beside the widest way, metres.
+const SHORT: f64 = 6.0;
+/// The wall is one where aisles side by side meet it this near to each other, metres.
+const IN_LINE: f64 = 0.5;
+/// So many rows side by side end before it, at least.
+const ROWS: usize = 2;
+/// The way is square to them but for an angle of this sine.
+const SQUARE: f64 = 0.05;
+/// What stands so near to its sides, in widths, does not bar the way.
+const SIDES: f64 = 0.2;
+/// What is no more than this from the wall is the wall, metres.
+const WALL: f64 = 0.3;
+/// Where no row ends more than so many pitches before the wall it may be by their last bays, which are empty.
+const BAY: f64 = 1.15;
+/// The longest row and the shortest one differ by so much, metres: where they end alike, a line is the way's side.
+const APART: f64 = 1.2;
+/// No more than this share of the way is not free.
+const CLEAR: f64 = 0.1;
+
+/// The ways with those before the heads of rows that are not known, or are so in part; none where there are no such.
+pub fn with(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], rows: &[Row]) -> Option<Vec<Strip>> {
+    let (parameters, frame) = (evidence.parameters, &evidence.grid.frame);
+    let mut all = strips.to_vec();
+    let mut is_more = false;
+    for view in views {
+        let Some(other) = crossing(views, view.direction) else { continue };
+        if libm::cos(other.angle - view.angle).abs() > SQUARE {
+            continue;
+        }
+        for chain in chains(strips, rows, view.direction) {
+            for side in [0, 1] {
+                let heads = Heads { look, frame, view, other, strips, side, parameters };
+                for way in heads.ways(&chain) {
+                    is_more |= add(&mut all, way);
+                }
+            }
+        }
+    }
+    is_more.then_some(all)
+}
+
+/// Two aisles and the faces of the row between them.
+#[derive(Clone, Copy)]
+struct Between {
+    aisles: [usize; 2],
+    faces: [f64; 2],
+}
+
+/// The rows of a direction, of those between the same aisles one; such as follow one another together.
+fn chains(strips: &[Strip], rows: &[Row], direction: usize) -> Vec<Vec<Between>> {
+    let own = rows.iter().filter(|row| row.direction == direction);
+    let pairs: BTreeMap<_, _> = own.filter_map(|row| row.between.map(|aisles| (aisles, row.across))).collect();
+    let mut sorted: Vec<Between> = pairs.into_iter().map(|(aisles, faces)| Between { aisles, faces }).collect();
+    sorted.sort_by(|a, b| strips[a.aisles[0]].middle().total_cmp(&strips[b.aisles[0]].middle()));
+    let mut chains: Vec<Vec<Between>> = Vec::new();
+    for row in sorted {
+        let before = chains.iter_mut().find(|chain| chain.last().is_some_and(|last| last.aisles[1] == row.aisles[0]));
+        match before {
+            Some(chain) => chain.push(row),
+            None => chains.push(vec![row]),
+        }
+    }
+    chains
+}
+
+/// A way, and from the middle of the first aisle that leads there to that of the last, along.
+struct Head {
+    way: Strip,
+    middles: [f64; 2],
+}
+
+/// One side of the aisles of a direction.
+struct Heads<'a> {
+    look: &'a Look<'a>,
+    frame: &'a Frame,
+    view: &'a Turned,
+    other: &'a Turned,
+    strips: &'a [Strip],
+    side: usize,
+    parameters: &'a Parameters,
+}
+
+impl Heads<'_> {
+    /// The ways between a wall and the rows of a chain that end before it.
+    fn ways(&self, chain: &[Between]) -> Vec<Head> {
+        let least = self.parameters.labels_min_width;
+        let before = |row: &Between| {
+            let [one, two] = row.aisles.map(|n| self.wall(n));
+            let (one, two) = (one?, two?);
+            let free = self.free(row, f64::midpoint(one, two));
+            ((one - two).abs() <= IN_LINE && free >= least).then_some((f64::midpoint(one, two), free))
+        };
+        let ends: Vec<Option<(f64, f64)>> = chain.iter().map(before).collect();
+        let mut found = Vec::new();
+        let mut from = 0;
+        while from < chain.len() {
+            let goes_on = |n: &usize| {
+                let wall = |n: usize| ends[n].map(|(wall, _)| wall);
+                wall(*n).zip(wall(from)).is_some_and(|(one, two)| (one - two).abs() <= IN_LINE)
+            };
+            let to = (from..chain.len()).find(|n| !goes_on(n)).unwrap_or(chain.len());
+            if to - from >= ROWS {
+                let of = |value: fn((f64, f64)) -> f64| ends[from..to].iter().flatten().map(move |&end| value(end));
+                let wall = of(|(wall, _)| wall).sum::<f64>() / (to - from) as f64;
+                let frees = of(|(_, free)| free);
+                let [width, most] =
+                    frees.fold([f64::INFINITY, 0.0], |[low, high], free| [low.min(free), high.max(free)]);
+                // Empty bays have their uprights: where one row has none for longer, it ends there.
+                let are_bays = self.view.pitch.is_some_and(|pitch| most <= BAY * pitch);
+                if most - width >= APART && !are_bays {
+                    found.extend(self.way(&chain[from..to], wall, width));
+                }
+            }
+            from = to.max(from + 1);
+        }
+        found
+    }
+
+    /// Where what closes an aisle beyond its end begins.
+    fn wall(&self, aisle: usize) -> Option<f64> {
+        junctions::closed(self.view, &self.strips[aisle], self.side, SHORT + self.parameters.labels_max_width)
+    }
+
+    /// How far a row ends before a wall, metres; as far as is looked where nothing of it stands.
+    fn free(&self, row: &Between, wall: f64) -> f64 {
+        let most = SHORT + self.parameters.labels_max_width;
+        let away = if self.side == 0 { 1.0 } else { -1.0 };
+        let ends = [wall + away * WALL, wall + away * most];
+        let before = Row {
+            direction: self.view.direction,
+            along: [ends[0].min(ends[1]), ends[0].max(ends[1])],
+            across: row.faces,
+            between: None,
+        };
+        let columns = Columns::new(self.look, self.frame, [self.view, self.other], &before, self.view.pitch);
+        columns.first_stop(self.side == 0).map_or(most, |free| WALL + free)
+    }
+
+    /// The way past some rows, if it is free.
+    fn way(&self, rows: &[Between], wall: f64, width: f64) -> Option<Head> {
+        let aisles = rows.iter().flat_map(|row| row.aisles).map(|n| self.strips[n].width()).fold(0.0, f64::max);
+        let widest = self.parameters.labels_max_width.min(through::widest_at_wall(aisles));
+        if !(family::LED_TO * aisles..=widest).contains(&width) {
+            return None;
+        }
+        let (first, last) = (&self.strips[rows.first()?.aisles[0]], &self.strips[rows.last()?.aisles[1]]);
+        let inner = if self.side == 0 { wall + width } else { wall - width };
+        let corners = [[wall, first.across[0]], [inner, last.across[1]]];
+        let [one, two] = corners.map(|place| self.other.place(self.view.to_map(place)));
+        let [along, across] = [0, 1].map(|axis| [one[axis].min(two[axis]), one[axis].max(two[axis])]);
+        let columns = self.other.column(along[0] + WALL)..self.other.column(along[1] - WALL);
+        let margin = SIDES * width;
+        let [low, high] = [across[0] + margin, across[1] - margin];
+        let is_clear = !self.other.some_closed(columns.clone(), low, high).any()
+            && self.other.mean_blocked(columns, low, high) <= CLEAR;
+        let way = Strip {
+            direction: self.other.direction,
+            along,
+            across,
+            score: along[1] - along[0],
+            bays: false,
+            is_ragged: true,
+            held: UNTOLD,
+        };
+        let middles = [first, last].map(|aisle| self.other.place(self.view.to_map([wall, aisle.middle()]))[0]);
+        let middles = [middles[0].min(middles[1]), middles[0].max(middles[1])];
+        is_clear.then_some(Head { way, middles })
+    }
+}
+
+/// Adds a way in place of what is known of it; false where it is known to lead as far, from middle to middle.
+fn add(all: &mut Vec<Strip>, Head { mut way, middles: own }: Head) -> bool {
+    let is_part = |strip: &Strip| strip.direction == way.direction && ragged::is_beside(strip, &way);
+    let known = |strip: &Strip| strip.along[1].min(own[1]) - strip.along[0].max(own[0]);
+    let parts: Vec<usize> = (0..all.len()).filter(|&n| is_part(&all[n])).collect();
+    let longest = parts.iter().map(|&n| known(&all[n])).fold(0.0, f64::max);
+    if longest >= own[1] - own[0] - IN_LINE {
+        return false;
+    }
+    for n in parts.into_iter().rev() {
+        let part = all.remove(n);
+        way.along = [way.along[0].min(part.along[0]), way.along[1].max(part.along[1])];
+    }
+    all.push(way);
+    true
+}

@@ -1,0 +1,44 @@
+"""Where rows end each at its own place before a wall, a way leads along it all the same."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import groundplan
+
+RESOLUTION = 0.1
+
+
+def hall(early: tuple[float, ...], boxes: tuple[tuple[float, float], ...] = ()) -> groundplan.Survey:
+    """40 m by 3 m and 4.5 m for each row: racks 1.5 m deep from the west wall to 3 m and more before the east wall."""
+    depth = 3.0 + 4.5 * len(early)
+    y, x = np.mgrid[-1.0 : depth + 1.0 : RESOLUTION, -1.0:41.0:RESOLUTION]
+    picture = np.full(x.shape, 205, dtype=np.uint8)
+    picture[(x > -0.2) & (x < 40.2) & (y > -0.2) & (y < depth + 0.2)] = 0
+    picture[(x > 0) & (x < 40) & (y > 0) & (y < depth)] = 254
+    for row, by in enumerate(early):
+        low = 3.0 + 4.5 * row
+        picture[(x > 0) & (x < 37 - by) & (y > low) & (y < low + 1.5)] = 0
+    for at in boxes:
+        picture[(abs(x - at[0]) < 0.2) & (abs(y - at[1]) < 0.2)] = 0
+    return groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION)
+
+
+@pytest.mark.parametrize("early", [(2.0, 0.0, 4.0), (5.0, 0.0), (0.0, 4.0, 1.5, 3.0)])
+def test_aisles_meet_the_way_along_the_wall_before_rows_of_any_length(early: tuple[float, ...]) -> None:
+    survey = hall(early)
+    kinds = sorted(label["type"] for label in survey.of_kind("junction") if label["type"] != "end")
+    assert kinds == ["L", "L"] + ["T"] * (len(early) - 1)
+    assert all(abs(label["at"][0] - 39.5) < 0.3 for label in survey.of_kind("junction") if label["type"] != "end")
+
+
+def test_boxes_on_both_faces_of_a_row_are_not_its_end() -> None:
+    survey = hall((0.0, 0.0, 0.0), boxes=((39.0, 3.0), (39.0, 4.5)))
+    ways = [label for label in survey.of_kind("corridor") if label["name"].startswith("C")]
+    assert [round(way["width"]) for way in ways] == [3]
+
+
+def test_rows_that_go_on_to_the_wall_leave_no_way_along_it() -> None:
+    survey = hall((-3.0, -3.0, -3.0))
+    assert {label["type"] for label in survey.of_kind("junction")} == {"end"}
