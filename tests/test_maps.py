@@ -16,6 +16,7 @@ import pytest
 from _reading import refused, states
 from PIL import Image
 
+import groundplan
 from groundplan._errors import MapError
 from groundplan.maps import FREE, OCCUPIED, UNKNOWN, Map, from_array, read
 
@@ -730,6 +731,40 @@ def test_arrays_that_are_no_maps(array: Pixels) -> None:
     with pytest.raises(MapError) as caught:
         from_array(array, 0.05)
     assert caught.value.code == "map.pixels"
+
+
+def test_masked_pixels_are_refused_and_a_mask_of_none_is_not() -> None:
+    greys = hall()
+    for take in (from_array, lambda array, resolution: groundplan.survey(array, resolution=resolution)):
+        with pytest.raises(MapError, match="12 pixels of the array are masked") as caught:
+            take(np.ma.masked_array(greys, np.arange(greys.size).reshape(greys.shape) < 12), 0.05)
+        assert caught.value.code == "map.pixels" and ".filled(205)" in str(caught.value.hint)
+    none = from_array(np.ma.masked_array(greys), 0.05)
+    assert type(none.pixels) is np.ndarray and (states(none) == EXPECTED).all()
+    with pytest.raises(groundplan.ParameterError, match="pixels of the patch are masked"):
+        survey = groundplan.survey(greys, resolution=0.05)
+        survey.update(np.ma.masked_array(greys[:4, :4], np.eye(4, dtype=bool)), 0, 0)
+
+
+def test_the_hint_for_shares_of_one_makes_a_map() -> None:
+    shares = np.array([[0.0, 1.0], [np.nan, 0.5]])
+    with pytest.raises(MapError) as caught:
+        from_array(shares, 0.05)
+    assert "np.where(np.isfinite(a), np.rint(100 * a), -1).astype('int8')" in str(caught.value.hint)
+    got = from_array(np.where(np.isfinite(shares), np.rint(100 * shares), -1).astype("int8"), 0.05)
+    assert got.values[got.pixels].tolist() == [[-1, 50], [0, 100]]
+
+
+@pytest.mark.parametrize("origin", [[1.0, 2.0], (1, 2, 0.0), np.array([1.0, 2.0, 0.0])])
+def test_an_origin_is_a_list_a_tuple_or_an_array(origin: Any) -> None:
+    assert groundplan.survey(hall(), resolution=0.05, origin=origin).map.origin == (1.0, 2.0, 0.0)
+
+
+@pytest.mark.parametrize("origin", [3, 3.5, "12", (1, 2, 3, 4), np.zeros((1, 3))])
+def test_an_origin_that_is_none_is_named(origin: Any) -> None:
+    with pytest.raises(MapError) as caught:
+        groundplan.survey(hall(), resolution=0.05, origin=origin)
+    assert caught.value.code == "map.origin"
 
 
 # The collection

@@ -120,3 +120,24 @@ def test_the_page_of_the_documentation_is_the_table(capsys: Capture) -> None:
     assert page.read_text(encoding="utf-8") == call(capsys, "parameters", "--markdown").out, (
         "make the page anew: groundplan parameters --markdown > docs/parameters.md"
     )
+
+
+@pytest.mark.parametrize("stage", ["labels", "lines", "pillars"])
+def test_a_least_width_above_the_greatest_names_both(stage: str, capsys: Capture) -> None:
+    settings: dict[str, Any] = {f"{stage}_min_width": 3.0, f"{stage}_max_width": 2.5}
+    said = f"{stage}.min_width cannot be 3 where {stage}.max_width is 2.5"
+    with pytest.raises(groundplan.ParameterError, match=said) as caught:
+        groundplan.survey(hall(), resolution=0.05, **settings)
+    assert caught.value.code == "parameter.range"
+    with pytest.raises(groundplan.ParameterError, match=said):
+        resolve(settings)
+    flags = (word for name, value in settings.items() for word in ("--set", f"{name}={value}"))
+    ran = call(capsys, "survey", "hall.yaml", "--json", *flags)
+    assert ran.code == 2 and said in ran.err
+    settings = dict.fromkeys(settings, 3.0)
+    groundplan.survey(hall(), resolution=0.05, **settings)
+
+
+def test_a_name_that_there_is_not_is_told_whatever_its_value() -> None:
+    with pytest.raises(groundplan.ParameterError, match="there is no parameter parameters"):
+        groundplan.survey(hall(), resolution=0.05, parameters={"labels.min_width": 1.0})

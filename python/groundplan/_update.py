@@ -20,6 +20,7 @@ from groundplan._errors import ParameterError
 from groundplan._results import record
 from groundplan.maps import Map, MapWarning
 from groundplan.maps._canvas import Canvas
+from groundplan.maps._read import masked
 from groundplan.maps._source import Bytes, Span, bands
 from groundplan.maps._warnings import MISSING
 from groundplan.parameters import named
@@ -116,6 +117,9 @@ def fitted(map: Map, patch: Any, row: int | None, column: int | None) -> tuple[B
     ParameterError
         ``update.patch``.
     """
+    if masked(patch):
+        said = f"{masked(patch)} pixels of the patch are masked, and what they are is not said"
+        raise ParameterError("update.patch", said, "fill them first, with .filled(value)")
     try:
         patch = np.asarray(patch)
     except ValueError as reason:

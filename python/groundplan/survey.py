@@ -420,10 +420,10 @@ def survey(
         if resolution is None:
             raise MapError("map.resolution", "an array needs its resolution", "survey(array, resolution=0.05)")
         try:
-            pixels = np.asarray(map)
+            pixels = np.asanyarray(map)
         except ValueError as reason:
             raise MapError("map.input", f"that is no map: {reason}", "its rows are all as long") from None
-        map = from_array(pixels, resolution, (0.0, 0.0, 0.0) if origin is None else tuple(origin))
+        map = from_array(pixels, resolution, (0.0, 0.0, 0.0) if origin is None else origin)
     if client is not None:
         from groundplan import _cluster
 

@@ -2,7 +2,7 @@
 
 use crate::named::Named;
 use groundplan::parameters::{Parameter, Range};
-use groundplan::{ParameterError, Parameters, Value};
+use groundplan::{ParameterError, Parameters, TABLE, Value};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyString};
 
@@ -11,9 +11,12 @@ pub fn read(dict: &Bound<'_, PyDict>) -> PyResult<Parameters> {
     let mut parameters = Parameters::default();
     for (name, value) in dict {
         let name: String = name.extract()?;
-        let value = to_value(&name, &value)?;
+        // A name that there is not is told before a value that no parameter has.
+        let is_known = TABLE.iter().any(|row| row.name == name);
+        let value = if is_known { to_value(&name, &value)? } else { Value::Auto };
         parameters.set(&name, value).map_err(|fault| raise(dict.py(), &fault))?;
     }
+    parameters.check().map_err(|fault| raise(dict.py(), &fault))?;
     Ok(parameters)
 }
 

@@ -234,6 +234,31 @@ impl Parameters {
         Ok(())
     }
 
+    /// Holds parameters against one another, once all that are asked for are set: no least is above its greatest.
+    ///
+    /// # Errors
+    /// When one is; the message has both values.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        let values = self.values();
+        let number = |name: &str| match values.iter().find(|(own, _)| *own == name) {
+            Some((_, Value::Number(n))) => Some(*n),
+            _ => None,
+        };
+        for (least, _) in values.iter().filter(|(name, _)| name.contains(".min_")) {
+            let greatest = least.replace(".min_", ".max_");
+            if let (Some(low), Some(high)) = (number(least), number(&greatest))
+                && low > high
+            {
+                return Err(ParameterError {
+                    code: "parameter.range",
+                    message: format!("{least} cannot be {low} where {greatest} is {high}"),
+                    hint: format!("{least} is {high} at most, or {greatest} {low} at least"),
+                });
+            }
+        }
+        Ok(())
+    }
+
     /// Every parameter's name and value, in the table's order.
     #[must_use]
     pub fn values(&self) -> Vec<(&'static str, Value)> {
@@ -368,6 +393,21 @@ mod tests {
         assert_eq!(fault.message, "directions.count cannot be 2.5");
         assert!(Parameters::default().set("lines.snr", Value::Number(f64::NAN)).is_err());
         assert!(Parameters::default().set("lines.snr", Value::Auto).is_err());
+    }
+
+    #[test]
+    fn no_least_is_above_its_greatest() {
+        for (least, greatest) in [("labels.min_width", "labels.max_width"), ("pillars.min_width", "pillars.max_width")]
+        {
+            let mut parameters = Parameters::default();
+            parameters.set(least, Value::Number(3.0)).unwrap();
+            parameters.set(greatest, Value::Number(3.0)).unwrap();
+            assert_eq!(parameters.check(), Ok(()));
+            parameters.set(greatest, Value::Number(2.5)).unwrap();
+            let fault = parameters.check().unwrap_err();
+            assert_eq!(fault.message, format!("{least} cannot be 3 where {greatest} is 2.5"));
+        }
+        assert_eq!(Parameters::default().check(), Ok(()));
     }
 
     #[test]

@@ -30,6 +30,8 @@ _CALLED: dict[Kind, str] = {
     "zarr": "a Zarr array",
     "points": "a point cloud",
 }
+#: How shares of 1 become a map.
+_SHARES = "of occupancies from 0 to 1: np.where(np.isfinite(a), np.rint(100 * a), -1).astype('int8'), lowest row first"
 _ONLY: dict[str, Kind] = {"topic": "bag", "stamp": "bag", "band": "points", "min_hits": "points"}
 
 
@@ -198,6 +200,7 @@ def from_array(
         uint8: the greys of an image, row 0 at the top, read as map_server does.
         int8: the data of a nav_msgs/OccupancyGrid, -1 and 0..100, row 0 at the bottom.
         bool: True is occupied, False is free, row 0 at the top.
+        A masked array has to be filled first: what its masked pixels are is not for this to say.
     resolution : float
         Metres per pixel.
     origin : (x, y) or (x, y, yaw)
@@ -211,8 +214,15 @@ def from_array(
     Raises
     ------
     MapError
-        ``map.pixels`` for another shape or type, and those of `read` for the other arguments.
+        ``map.pixels`` for another shape or type, or masked pixels, and those of `read` for the other arguments.
     """
+    if masked(array):
+        raise MapError(
+            "map.pixels",
+            f"{masked(array)} pixels of the array are masked, and what they are is not said",
+            "where they are unknown: .filled(205) of uint8, .filled(-1) of int8",
+        )
+    array = np.asarray(array)
     if array.ndim != 2 or array.size == 0:
         raise MapError("map.pixels", f"an array of shape {array.shape} is not a map; it needs height x width pixels")
     metres = check_resolution(resolution, "resolution")
@@ -229,9 +239,15 @@ def from_array(
         raise MapError(
             "map.pixels",
             f"an array of {array.dtype} is not a map; it needs uint8 greys, int8 occupancies or bool",
-            "convert an OccupancyGrid's data with .astype('int8')",
+            _SHARES if array.dtype.kind == "f" else "convert an OccupancyGrid's data with .astype('int8')",
         )
     return Map(pixels, values, states, metres, pose, image, tuple(warnings + odd))
+
+
+def masked(array: object) -> int:
+    """How many pixels of an array are masked: under the mask lies any value."""
+    mask = getattr(array, "mask", None)
+    return int(np.count_nonzero(mask)) if isinstance(mask, np.ndarray) else 0
 
 
 def _described(
