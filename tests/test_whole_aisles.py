@@ -97,3 +97,36 @@ def test_where_an_aisle_is_wider_or_narrower_there_is_no_second_one_within_it(na
         one, other = (shapely.Polygon(way["polygon"]) for way in ways)
         if abs(ax * by - ay * bx) < 0.01:
             assert one.intersection(other).area < 0.5 * min(one.area, other.area), [way["name"] for way in ways]
+
+
+def test_an_aisle_between_two_racks_is_as_wide_as_they_leave_it_though_a_box_stands_in_it(shared: Path) -> None:
+    survey = groundplan.survey(groundplan.read(shared / "maps" / "nav2_warehouse.yaml"))
+    (aisle,) = (label for label in survey.of_kind("corridor") if min(y for _, y in label["axis"]) > 12.0)
+    assert aisle["width"] == pytest.approx(7.0, abs=0.1)
+
+
+def test_an_aisle_past_the_ends_of_racks_ends_with_them(shared: Path) -> None:
+    survey = groundplan.survey(groundplan.read(shared / "maps" / "tugbot_warehouse_shelves.yaml"))
+    (aisle,) = (label for label in survey.of_kind("corridor") if all(8.5 < x < 9.5 for x, _ in label["axis"]))
+    assert 6.0 < max(y for _, y in aisle["axis"]) < 9.5
+
+
+def test_an_aisle_that_bends_goes_on_behind_the_bend(shared: Path) -> None:
+    survey = groundplan.survey(groundplan.read(shared / "maps" / "torwic_slam_warehouse.yaml"))
+    low = [label["axis"] for label in survey.of_kind("corridor") if max(y for _, y in label["axis"]) < 12.0]
+    assert len(low) == 2
+    assert [min(x for axis in low for x, _ in axis), max(x for axis in low for x, _ in axis)] == pytest.approx(
+        [9.6, 40.1], abs=0.5
+    )
+
+
+@pytest.mark.parametrize("name", ["xixian_office", "halmstad/E5_12"])
+def test_no_corridor_lies_on_another_that_runs_nearly_the_same_way(name: str, shared: Path) -> None:
+    survey = groundplan.survey(groundplan.read(shared / "maps" / f"{name}.yaml"))
+    corridors = survey.of_kind("corridor")
+    places = [shapely.Polygon(label["polygon"]) for label in corridors]
+    ways = [np.subtract(*label["axis"]) / np.hypot(*np.subtract(*label["axis"])) for label in corridors]
+    for one, two in itertools.combinations(range(len(corridors)), 2):
+        shared_area = places[one].intersection(places[two]).area
+        if abs(ways[one] @ ways[two]) > 0.9:
+            assert shared_area < 0.5 * min(places[one].area, places[two].area)

@@ -2,7 +2,7 @@
 
 use super::barriers;
 use super::beside::{Beside, placed};
-use super::corridors::Strip;
+use super::corridors::{ASKEW, Strip};
 use super::turned::Turned;
 use crate::sets::Sets;
 
@@ -57,8 +57,8 @@ pub fn join(views: &[Turned], mut strips: Vec<Strip>, least: f64) -> Vec<Strip> 
     strips
 }
 
-/// The ways without those that lie for the most part within longer ones of their direction, which went on to what they
-/// meet past a place that is wider or narrower.
+/// The ways without those that lie for the most part within longer ones: of their direction, which went on to what they
+/// meet past a place that is wider or narrower, or larger ones that run nearly the same way.
 pub fn apart(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
     let lies_within = |n: usize, m: usize| {
@@ -74,11 +74,40 @@ pub fn apart(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
         .map(|n| {
             let Strip { direction, along, across, .. } = strips[n];
             !placed[direction].touching(along, across).into_iter().any(|m| m != n && lies_within(n, m))
+                && !lies_askew_on(views, &strips, &placed, n)
         })
         .collect();
     let mut kept = kept.into_iter();
     strips.retain(|_| kept.next().unwrap_or(false));
     strips
+}
+
+/// True when most of a way's middle, between its own sides, lies on a larger one that runs nearly the same way; of all it is
+/// known where they lie.
+fn lies_askew_on(views: &[Turned], strips: &[Strip], placed: &[Beside], n: usize) -> bool {
+    let strip = &strips[n];
+    let own = &views[strip.direction];
+    let sided = [strip.along[0].max(strip.held[0]), strip.along[1].min(strip.held[1])];
+    let middle = sided.map(|u| own.to_map([u, strip.middle()]));
+    let askew = |its: &&Turned| its.direction != own.direction && libm::sin(own.angle - its.angle).abs() < ASKEW;
+    views.iter().filter(askew).any(|its| {
+        let [from, to] = middle.map(|end| its.place(end));
+        let [along, across] = [0, 1].map(|axis| [from[axis].min(to[axis]), from[axis].max(to[axis])]);
+        let is_larger = |m: usize| {
+            let [size, larger] = [strip, &strips[m]].map(|strip| strip.length() * strip.width());
+            larger > size || larger == size && m < n
+        };
+        let near = placed[its.direction].touching(along, across).into_iter();
+        near.filter(|&m| is_larger(m)).any(|m| {
+            // From which share of the middle to which the other holds it.
+            let mut held: [f64; 2] = [0.0, 1.0];
+            for (axis, sides) in [strips[m].along, strips[m].across].into_iter().enumerate() {
+                let at = sides.map(|side| (side - from[axis]) / (to[axis] - from[axis]));
+                held = [held[0].max(at[0].min(at[1])), held[1].min(at[0].max(at[1]))];
+            }
+            held[1] - held[0] > WITHIN
+        })
+    })
 }
 
 /// What two strips share, across.

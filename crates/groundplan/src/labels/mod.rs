@@ -15,6 +15,7 @@ mod grounds;
 mod heads;
 mod joined;
 mod junctions;
+mod led;
 mod legs;
 mod look;
 mod looks;

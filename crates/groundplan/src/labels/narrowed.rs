@@ -1,8 +1,9 @@
-//! Ways past the ends of racks: one that racks across it reach into from its sides is as wide as what they leave of it.
+//! Ways past the ends of racks: one that racks across it reach into from its sides is as wide as what they leave of it, and
+//! one whose sides are no lines ends with the racks beside it, unless it leads on to something.
 
 use super::beside::{Beside, wider};
 use super::corridors::Strip;
-use super::racks::{Row, SAME};
+use super::racks::{DEPTH, Row, SAME};
 use super::turned::Turned;
 
 /// Racks leave no less of a way than this share of its width, or what they stand in is none along it.
@@ -10,17 +11,29 @@ const LEFT: f64 = 0.5;
 /// A rack stands across a direction when the cosine of the angle between is no more than this.
 const ASKEW: f64 = 0.05;
 
-/// The strips, each between the racks that reach into it; none becomes narrower than the least that a corridor is.
-pub fn past(views: &[Turned], strips: &[Strip], racks: &[Row], least: f64) -> Vec<Strip> {
+/// The strips, each between the racks that reach into it, and from where to where it leads along; none becomes narrower
+/// than the least that a corridor is.
+pub fn past(views: &[Turned], strips: &[Strip], racks: &[Row], reached: &[[f64; 2]], least: f64) -> Vec<Strip> {
     let mut past = strips.to_vec();
     for view in views {
-        let stand: Vec<_> = racks.iter().filter_map(|rack| place(view, &views[rack.direction], rack)).collect();
+        let places: Vec<_> = racks.iter().map(|rack| place(view, &views[rack.direction], rack)).collect();
         let mut placed = Beside::of(view);
-        stand.iter().enumerate().for_each(|(n, &[along, across])| placed.add(n, along, across));
-        for strip in past.iter_mut().filter(|strip| strip.direction == view.direction) {
-            let left = between(strip, placed.touching(strip.along, strip.across).into_iter().map(|n| stand[n]));
-            if left[1] - left[0] >= least.max(LEFT * strip.width()) {
-                strip.across = left;
+        places.iter().enumerate().for_each(|(n, &[along, across])| placed.add(n, along, across));
+        let is_across = |n: &usize| libm::cos(views[racks[*n].direction].angle - view.angle).abs() <= ASKEW;
+        for (strip, reached) in past.iter_mut().zip(reached).filter(|(strip, _)| strip.direction == view.direction) {
+            let across = placed.touching(strip.along, strip.across).into_iter().filter(is_across);
+            let left = between(strip, across.map(|n| places[n]));
+            if left == strip.across || left[1] - left[0] < least.max(LEFT * strip.width()) {
+                continue;
+            }
+            strip.across = left;
+            if strip.is_ragged {
+                let beside = wider(left, DEPTH.0);
+                let near = placed.touching(strip.along, beside).into_iter().map(|n| places[n]);
+                let near = near.filter(|[_, across]| beside[0] <= across[1] && across[0] <= beside[1]);
+                let ends = |[low, high]: [f64; 2], [from, to]: [f64; 2]| [low.min(from), high.max(to)];
+                let [from, to] = near.map(|[along, _]| along).fold(*reached, ends);
+                strip.along = [strip.along[0].max(from), strip.along[1].min(to)];
             }
         }
     }
@@ -46,15 +59,12 @@ fn between(strip: &Strip, racks: impl Iterator<Item = [[f64; 2]; 2]>) -> [f64; 2
     left
 }
 
-/// From where to where a rack that stands across a direction does so, along and across.
-fn place(view: &Turned, own: &Turned, rack: &Row) -> Option<[[f64; 2]; 2]> {
-    if libm::cos(own.angle - view.angle).abs() > ASKEW {
-        return None;
-    }
+/// From where to where a rack stands, along and across a direction.
+fn place(view: &Turned, own: &Turned, rack: &Row) -> [[f64; 2]; 2] {
     let corners = own.rectangle(rack.along, rack.across).into_iter().map(|corner| view.place(corner));
     let ends = |axis: usize| {
         let places = corners.clone().map(|corner| corner[axis]);
         places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], place| [low.min(place), high.max(place)])
     };
-    Some([ends(0), ends(1)])
+    [ends(0), ends(1)]
 }

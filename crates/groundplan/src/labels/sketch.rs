@@ -8,6 +8,7 @@ use super::gates;
 use super::heads;
 use super::joined;
 use super::junctions::{self, Meeting};
+use super::led;
 use super::legs;
 use super::look::Look;
 use super::narrowed;
@@ -36,9 +37,6 @@ const NICHES: (f64, f64) = (2.2, 4.0);
 /// Two niches face each other across a corridor where both together are less than this share of its length, the one is no
 /// less than that share of the other, neither goes on as far as both must, and both are shut.
 const FACING: f64 = 0.5;
-
-/// A way opens into another when its end is so near to the other's side, metres.
-const MOUTH: f64 = 3.0;
 
 /// What the map shows without its faces.
 pub struct Sketch {
@@ -136,11 +134,19 @@ impl Plan {
         let found = gates::without_bays(evidence, look, views, found);
         let threads = evidence.threads;
         let standing = Standing::new(views, threads);
+        // What was too short to stay bars no way whose sides are no lines, but tells how wide that is.
+        let pieces = placed(views, found.iter().map(Strip::place));
+        let over: Vec<Strip> = over.into_iter().map(|way| led::sided_by(views, way, &found, &pieces)).collect();
         let mut plan = Self::new(views, found, threads);
-        // What was too short to stay bars no way whose sides are no lines.
         plan = plan.with(views, &over, least, threads);
-        // Where racks stand and an aisle opens into it, a way that ends at walls is no part of a room.
-        let cut: Vec<Strip> = cut.into_iter().filter(|way| is_opened_into(views, way, &plan.strips)).collect();
+        // A way that ends at walls is no part of a room where others open into it and it goes on as one of them, or
+        // racks stand.
+        let known = placed(views, plan.strips.iter().map(Strip::place));
+        let (led, cut): (Vec<_>, Vec<_>) = cut
+            .into_iter()
+            .filter(|way| led::is_opened_into(views, way, &plan.strips))
+            .partition(|way| led::goes_on_as(way, &plan.strips, &known));
+        plan = plan.with(views, &led, least, threads);
         if !cut.is_empty() && !plan.find_racks(views, on_legs, &standing, threads).is_empty() {
             plan = plan.with(views, &cut, least, threads);
         }
@@ -155,12 +161,29 @@ impl Plan {
             plan = Self::new(views, more, threads);
         }
         plan.racks = plan.find_racks(views, on_legs, &standing, threads);
-        let narrow = narrowed::past(views, &plan.strips, &plan.racks, evidence.parameters.labels_min_width);
+        let narrow = narrowed::past(views, &plan.strips, &plan.racks, &plan.reached(views), least);
         if narrow != plan.strips {
             plan = Self::new(views, narrow, threads);
             plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }
         plan
+    }
+
+    /// From where to where each way leads, along: to what it meets, and to walls at its ends.
+    fn reached(&self, views: &[Turned]) -> Vec<[f64; 2]> {
+        let mut reached = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.strips.len()];
+        let mut add = |n: usize, from: f64, to: f64| {
+            let [low, high] = reached[n];
+            reached[n] = [low.min(from), high.max(to)];
+        };
+        for meeting in &self.meetings {
+            for &n in &meeting.corridors {
+                let (u, reach) = (views[self.strips[n].direction].place(meeting.at)[0], reach(meeting, n));
+                add(n, u - reach, u + reach);
+            }
+        }
+        self.ends.iter().for_each(|&(n, _, place)| add(n, place, place));
+        reached
     }
 
     /// With what its ways leave of others.
@@ -259,20 +282,6 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<S
         let mut flags = stays.into_iter();
         strips.retain(|_| flags.next().unwrap_or(false));
     }
-}
-
-/// True when another ends at a way's side, or so near that it opens into it.
-fn is_opened_into(views: &[Turned], way: &Strip, strips: &[Strip]) -> bool {
-    let own = &views[way.direction];
-    let opens = |strip: &Strip| {
-        let its = &views[strip.direction];
-        libm::sin(own.angle - its.angle).abs() > corridors::ASKEW
-            && strip.along.into_iter().any(|end| {
-                let [u, v] = own.place(its.to_map([end, strip.middle()]));
-                (way.along[0]..=way.along[1]).contains(&u) && (v - way.middle()).abs() <= way.width() / 2.0 + MOUTH
-            })
-    };
-    strips.iter().any(opens)
 }
 
 /// True when others that are alike run beside a strip, one after another, so far apart, metres.

@@ -1,0 +1,64 @@
+//! Ways whose sides are no lines, and what others tell of them: pieces between lines that they lie over, and ways that lead
+//! there.
+
+use super::beside::{Beside, wider};
+use super::corridors::{self, Strip};
+use super::turned::Turned;
+
+/// A way opens into another when its end is so near to the other's side, metres.
+const MOUTH: f64 = 3.0;
+/// A way lies over a piece when it shares more than this of its own length and width.
+const OVER: f64 = 0.5;
+/// It goes on beyond one over floor that is free but for this share.
+const CLUTTER: f64 = 0.1;
+
+/// A way that lies over a piece between lines, too short by itself, has that one's sides where floor shows between them up
+/// to the way's ends: what stands on the floor narrows it no more than it does the piece.
+pub fn sided_by(views: &[Turned], way: Strip, pieces: &[Strip], placed: &[Beside]) -> Strip {
+    let view = &views[way.direction];
+    let shared = |one: [f64; 2], two: [f64; 2]| one[1].min(two[1]) - one[0].max(two[0]);
+    let is_under = |piece: &&Strip| {
+        !piece.is_ragged
+            && shared(piece.along, way.along) > OVER * way.length()
+            && shared(piece.across, way.across) > OVER * way.width()
+    };
+    let near = placed[way.direction].touching(way.along, way.across).into_iter().map(|n| &pieces[n]);
+    let Some(piece) = near.filter(is_under).max_by(|a, b| a.length().total_cmp(&b.length())) else { return way };
+    let is_floor = |[from, to]: [f64; 2]| {
+        let [low, high] = piece.across;
+        from >= to || view.mean_blocked(view.column(from)..view.column(to) + 1, low, high) <= CLUTTER
+    };
+    if !is_floor([way.along[0], piece.along[0]]) || !is_floor([piece.along[1], way.along[1]]) {
+        return way;
+    }
+    let along = [way.along[0].min(piece.along[0]), way.along[1].max(piece.along[1])];
+    Strip { along, across: piece.across, ..way }
+}
+
+/// True when another ends at a way's side, or so near that it opens into it.
+pub fn is_opened_into(views: &[Turned], way: &Strip, strips: &[Strip]) -> bool {
+    let own = &views[way.direction];
+    let opens = |strip: &Strip| {
+        let its = &views[strip.direction];
+        libm::sin(own.angle - its.angle).abs() > corridors::ASKEW
+            && strip.along.into_iter().any(|end| {
+                let [u, v] = own.place(its.to_map([end, strip.middle()]));
+                (way.along[0]..=way.along[1]).contains(&u) && (v - way.middle()).abs() <= way.width() / 2.0 + MOUTH
+            })
+    };
+    strips.iter().any(opens)
+}
+
+/// True when another of its direction ends in a way, as where both are one that bends: no farther from the way's end than
+/// that is wide, and on its other side goes on beyond it for as long at least.
+pub fn goes_on_as(way: &Strip, strips: &[Strip], placed: &[Beside]) -> bool {
+    let width = way.width();
+    let follows = |strip: &Strip| {
+        let [low, high] = [strip.across[0].max(way.across[0]), strip.across[1].min(way.across[1])];
+        let within = [strip.along[1] - way.along[0], way.along[1] - strip.along[0]];
+        let beyond = [way.along[0] - strip.along[0], strip.along[1] - way.along[1]];
+        low < high && (0..2).any(|side| (0.0..=width).contains(&within[side]) && beyond[side] >= width)
+    };
+    let near = placed[way.direction].touching(wider(way.along, width), way.across);
+    near.into_iter().any(|n| follows(&strips[n]))
+}
