@@ -130,3 +130,12 @@ def test_no_corridor_lies_on_another_that_runs_nearly_the_same_way(name: str, sh
         shared_area = places[one].intersection(places[two]).area
         if abs(ways[one] @ ways[two]) > 0.9:
             assert shared_area < 0.5 * min(places[one].area, places[two].area)
+
+
+def test_an_aisle_goes_on_where_its_sides_are_no_lines_any_more(shared: Path) -> None:
+    survey = groundplan.survey(groundplan.read(shared / "maps" / "torwic_slam_warehouse.yaml"))
+    main = max(survey.of_kind("corridor"), key=lambda label: float(np.hypot(*np.subtract(*label["axis"]))))
+    assert max(y for _, y in main["axis"]) > 78.0
+    assert main["width"] == pytest.approx(3.6, abs=0.2)
+    corners = [label["at"] for label in survey.of_kind("junction") if label["type"] == "L"]
+    assert min(np.hypot(*np.subtract(at, (39.1, 43.3))) for at in corners) < 1.0

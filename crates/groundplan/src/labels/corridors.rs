@@ -72,9 +72,9 @@ pub fn widest(strips: &[Strip]) -> f64 {
 }
 
 /// Corridors along every direction, in the order of the directions: of each those between lines by their places, and
-/// then the ragged ones, the best first. And ragged ways over such as are too short by themselves, and what walls leave of
-/// others.
-pub fn find(evidence: &Evidence, views: &[Turned]) -> (Vec<Strip>, [Vec<Strip>; 2]) {
+/// then the ragged ones, the best first. And ragged ways over such as are too short by themselves, what walls leave of others,
+/// and what goes on beyond the ends of those.
+pub fn find(evidence: &Evidence, views: &[Turned]) -> (Vec<Strip>, [Vec<Strip>; 3]) {
     // Of few views one may be done long before another, which then has all threads; but of large ones each thread lays out
     // rows, for which there is not room enough.
     let is_shared = views.len() >= evidence.threads || views.iter().any(Turned::is_large);
@@ -95,10 +95,11 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> (Vec<Strip>, [Vec<Strip>; 
     let (known, ragged): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     let mut strips = known.concat();
     let mut placed = placed(views, strips.iter().map(Strip::place));
-    let mut others = [Vec::new(), Vec::new()];
-    for Ways { mut sure, over, cut } in ragged {
+    let mut others = [Vec::new(), Vec::new(), Vec::new()];
+    for Ways { mut sure, over, cut, on } in ragged {
         others[0].extend(over);
         others[1].extend(cut);
+        others[2].extend(on);
         sure.retain(|way| !is_askew_in(views, way, &strips, &placed));
         for way in sure {
             placed[way.direction].add(strips.len(), way.along, way.across);

@@ -23,6 +23,7 @@ mod mouths;
 mod names;
 mod narrowed;
 mod near;
+mod onward;
 mod outline;
 mod paper;
 mod patches;

@@ -4,6 +4,7 @@
 
 use super::beside::Beside;
 use super::corridors::{self, Strip};
+use super::onward;
 use super::stretches::{Candidate, Found, Held, beyond, depth, fewest_seen, ragged};
 use super::sums::What;
 use super::sweep::Sweep;
@@ -36,6 +37,8 @@ pub struct Ways {
     pub over: Vec<Strip>,
     /// What walls at its ends leave of one, for places of racks.
     pub cut: Vec<Strip>,
+    /// What goes on beyond the ends of known ones.
+    pub on: Vec<Strip>,
 }
 
 /// The ways along one direction beside those that are known.
@@ -73,7 +76,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     });
     candidates.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.tried.cmp(&b.tried)));
     let mut all = known.to_vec();
-    let [mut over, mut cut] = [0; 2].map(|_| Apart { ways: Vec::new(), placed: Beside::of(view) });
+    let [mut over, mut cut, mut on] = [0; 3].map(|_| Apart { ways: Vec::new(), placed: Beside::of(view) });
     let mut placed = Beside::of(view);
     let mut next = 0;
     for short in candidates {
@@ -92,6 +95,9 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
             all.push(candidate);
             continue;
         }
+        for way in onward::of(view, &candidate, &rivals) {
+            on.add(&way);
+        }
         if rivals.iter().all(|rival| rival.is_short()) {
             over.add(&candidate);
         }
@@ -103,7 +109,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     let whole = |way: Strip| Strip { across: widened(view, &way, parameters.labels_max_width), ..way };
     let [sure, over, cut] =
         [all.split_off(known.len()), over.ways, cut.ways].map(|ways| ways.into_iter().map(whole).collect());
-    Ways { sure, over, cut }
+    Ways { sure, over, cut, on: on.ways }
 }
 
 /// Ways that share no ground with one another, the best first.

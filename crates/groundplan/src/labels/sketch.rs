@@ -129,8 +129,10 @@ pub struct Plan {
 impl Plan {
     fn of(evidence: &Evidence, look: &Look, views: &[Turned], on_legs: &[Row]) -> Self {
         let least = evidence.parameters.labels_min_width;
-        let (found, [over, cut]) = corridors::find(evidence, views);
-        let found = joined::join(views, found, least);
+        let (found, [over, cut, on]) = corridors::find(evidence, views);
+        let mut found = joined::join(views, [found, on.clone()].concat(), least);
+        // What goes on beyond a way is none by itself.
+        found.retain(|strip| !on.contains(strip));
         let found = gates::without_bays(evidence, look, views, found);
         let threads = evidence.threads;
         let standing = Standing::new(views, threads);
