@@ -132,7 +132,10 @@ impl Plan {
         let (found, [over, cut, on]) = corridors::find(evidence, views);
         let mut found = joined::join(views, [found, on.clone()].concat(), least);
         // What goes on beyond a way is none by itself.
-        found.retain(|strip| !on.contains(strip));
+        let beyond = placed(views, on.iter().map(Strip::place));
+        let is_on =
+            |way: &Strip| beyond[way.direction].touching(way.along, way.across).into_iter().any(|n| on[n] == *way);
+        found.retain(|way| !is_on(way));
         let found = gates::without_bays(evidence, look, views, found);
         let threads = evidence.threads;
         let standing = Standing::new(views, threads);
