@@ -56,7 +56,6 @@ impl<'a> Look<'a> {
     /// The sums of what lies in cells, which have as many samples along as there are lanes of them, [`LANES`] at most;
     /// each lane begins at a place of its own. Those from the `first` cell on.
     pub fn cells(&self, lanes: &[[f64; 2]], step: [f64; 2], first: usize, cells: &mut [u8]) {
-        let fixed = |p: [f64; 2]| p.map(|v| (v * (1i64 << BITS) as f64).round() as i64);
         let per = lanes.len();
         let mut starts = [[0; 2]; LANES];
         let step = fixed(step);
@@ -120,6 +119,44 @@ impl<'a> Look<'a> {
         }
     }
 
+    /// In which cells something stands on a lane that has so many samples in each: these get its bit. From the first of
+    /// some cells on.
+    pub fn mark(&self, lane: [f64; 2], step: [f64; 2], [per, first]: [usize; 2], bit: u32, cells: &mut [u32]) {
+        let step = fixed(step);
+        let start = after(fixed(lane), step, first * per);
+        let on_map = self.on_map(start, step, cells.len() * per);
+        let alike = Alike::new(&[start], step);
+        let mut n = on_map.start;
+        while n < on_map.end {
+            let mut place = after(start, step, n);
+            let [x, y] = place.map(|p| (p >> BITS) as usize);
+            let leap = alike.samples(place, self.reaches[y / SIDE * self.across + x / SIDE]);
+            if leap > 0 {
+                let end = on_map.end.min(n + leap);
+                if self.stands([x, y]) {
+                    cells[n / per..end.div_ceil(per)].iter_mut().for_each(|cell| *cell |= bit);
+                }
+                n = end;
+                continue;
+            }
+            // To the end of the cell.
+            let end = on_map.end.min((n / per + 1) * per);
+            for _ in n..end {
+                if self.stands(place.map(|p| (p >> BITS) as usize)) {
+                    cells[n / per] |= bit;
+                    break;
+                }
+                place = [place[0] + step[0], place[1] + step[1]];
+            }
+            n = end;
+        }
+    }
+
+    /// True where something stands on a pixel of the map.
+    fn stands(&self, [x, y]: [usize; 2]) -> bool {
+        self.samples[usize::from(self.rows[y][x])] == OCCUPIED
+    }
+
     /// Of so many samples those that lie on the map.
     fn on_map(&self, start: [i64; 2], step: [i64; 2], count: usize) -> Range<usize> {
         let size = [self.width, self.rows.len()];
@@ -139,6 +176,11 @@ pub fn between_rays(row: &mut [u8], samples: u8) {
     let through: Vec<bool> = row.iter().map(|cell| *cell < samples).collect();
     let inner = row.iter_mut().skip(1).zip(through.windows(3));
     inner.filter(|(_, near)| !near.contains(&false)).for_each(|(cell, _)| *cell = 0);
+}
+
+/// A place, or a step, in fixed point.
+fn fixed(p: [f64; 2]) -> [i64; 2] {
+    p.map(|v| (v * (1i64 << BITS) as f64).round() as i64)
 }
 
 /// Where a lane's sample lies.

@@ -3,7 +3,7 @@
 
 use super::Evidence;
 use super::grounds::Grounds;
-use super::look::{LANES, Look, between_rays};
+use super::look::{BLOCKED, LANES, Look, OCCUPIED, between_rays};
 use super::patches::Patches;
 use super::racks::Row;
 use super::recall::Key;
@@ -164,19 +164,29 @@ impl Turned {
         let at = |u: f64, v: f64| frame.to_pixels(self.to_map([self.start[0] + u, self.start[1] + v]));
         let (origin, along, across) = (at(0.0, 0.0), at(sample, 0.0), at(0.0, sample));
         let steps = [along, across].map(|p| [0, 1].map(|axis| p[axis] - origin[axis]));
-        let place = |b: f64| [0, 1].map(|axis| origin[axis] + 0.5 * steps[0][axis] + b * steps[1][axis]);
-        let lane = |n: usize| place(n as f64 + 0.5);
+        let place = |a: f64, b: f64| [0, 1].map(|axis| origin[axis] + a * steps[0][axis] + b * steps[1][axis]);
+        // Where samples are pixels apart, the staircase of a wall one pixel thick has no gap in lanes of two pixels, and no
+        // pixel lies between so many looks along and across a cell.
+        let pixels = (self.cell / frame.resolution).round() as usize;
+        let thin = pixels.div_ceil(2).clamp(samples, u32::BITS as usize);
+        let looks = pixels.next_multiple_of(thin);
         let make = |n: usize, first: usize, row: &mut [u8]| {
-            let lanes: [[f64; 2]; LANES] = std::array::from_fn(|j| lane(n * samples + j));
+            let lanes: [[f64; 2]; LANES] = std::array::from_fn(|j| place(0.5, (n * samples + j) as f64 + 0.5));
             look.cells(&lanes[..samples], steps[0], first, row);
             if is_fine {
+                let each = f64::from(self.samples) / looks as f64;
+                let step = steps[0].map(|step| step * each);
+                add_thin(row, [thin, looks], |k, stands, bit| {
+                    let lane = place(0.5 * each, (n * samples) as f64 + (k as f64 + 0.5) * each);
+                    look.mark(lane, step, [looks, first], bit, stands);
+                });
                 between_rays(row, self.samples.pow(2) as u8);
             }
             self.take(n, first, row);
         };
         let patches = evidence.recall.patches(evidence.grid, evidence.threads);
         let key = |rows: Range<usize>| {
-            let lanes = [lane(rows.start * samples), lane(rows.end * samples - 1)];
+            let lanes = [rows.start, rows.end].map(|n| place(0.0, (n * samples) as f64));
             let under = |patches: &Patches| patches.under(lanes, steps[0], self.size[0] * samples);
             let key = patches.map_or(Key::default(), under).with(rows.len() as u64).with(samples as u64);
             let [low, high] = [rows.start, rows.end].map(|n| self.start[1] + n as f64 * self.cell);
@@ -441,6 +451,19 @@ impl Turned {
     fn cells(&self, low: f64, high: f64) -> (usize, usize) {
         let at = |v: f64| (((v - self.start[1]) / self.cell).round().max(0.0) as usize).min(self.size[1]);
         (at(low), at(high).max(at(low)))
+    }
+}
+
+/// In a row of cells, what stands across a cell, or across it and the next, and is so thin that no sample lies on it: it
+/// shows in all of so many lanes, along each of which is looked so often. Single specks do not.
+fn add_thin(row: &mut [u8], [lanes, looks]: [usize; 2], look_along: impl Fn(usize, &mut [u32], u32)) {
+    let mut stands = vec![0; row.len() + 1];
+    (0..looks).for_each(|k| look_along(k, &mut stands[..row.len()], 1 << (k * lanes / looks)));
+    for (cell, near) in row.iter_mut().zip(stands.windows(2)) {
+        let is_across = (near[0] | near[1]).count_ones() as usize == lanes;
+        if is_across && near[0] != 0 && *cell < OCCUPIED {
+            *cell = (*cell).max(BLOCKED) + OCCUPIED - BLOCKED;
+        }
     }
 }
 
