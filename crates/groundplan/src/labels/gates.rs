@@ -119,14 +119,23 @@ fn left_between(strip: &Strip, crossed: &[Crossed]) -> Option<[f64; 2]> {
     if within.len() < 2 || 2 * open >= within.len() {
         return None;
     }
-    let both = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].min(b[1])];
     let common = within.iter().fold(vec![strip.across], |common, row| {
         let shared = common.iter().flat_map(|&one| row.between.iter().map(move |&two| both(one, two)));
-        shared.filter(|ends| ends[1] - ends[0] >= WIDTH.0).collect()
+        shared.filter(is_wide).collect()
     });
     let width = |ends: &[f64; 2]| ends[1] - ends[0];
     let left = common.into_iter().max_by(|a, b| width(a).total_cmp(&width(b)))?;
     (width(&left) >= LEFT * strip.width()).then_some(left)
+}
+
+/// What two stretches share.
+fn both(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].max(b[0]), a[1].min(b[1])]
+}
+
+/// True when a way may lead through.
+fn is_wide(ends: &[f64; 2]) -> bool {
+    ends[1] - ends[0] >= WIDTH.0
 }
 
 /// The rows that each strip crosses.
@@ -231,7 +240,7 @@ fn cross(
         open: way || passes,
         at_end,
         free,
-        between: open.iter().map(|&ends| sorted(ends.map(across))).collect(),
+        between: open.iter().map(|&ends| both(sorted(ends.map(across)), strip.across)).filter(is_wide).collect(),
     })
 }
 
