@@ -350,12 +350,13 @@ def test_ctrl_c_ends_cleanly(tmp_path: Path) -> None:
     pixels = np.full((6000, 6000), 254, np.uint8)
     pixels[rows], pixels[:, rows] = 0, 0
     write_pgm(tmp_path / "big.pgm", pixels)
-    code = "import sys; from groundplan.cli import main; sys.exit(main())"
+    code = "import sys; from groundplan.cli import main; print('ready', flush=True); sys.exit(main())"
     words = ["survey", "big.pgm", "--resolution", "0.05", "--threads", "1", "-o", "out"]
     with subprocess.Popen(
         [sys.executable, "-c", code, *words], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as process:
-        time.sleep(0.7)
+        assert process.stdout is not None and process.stdout.readline() == "ready\n"
+        time.sleep(0.5)
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
     assert (process.returncode, out, err) == (130, "", "error: interrupted\n")
