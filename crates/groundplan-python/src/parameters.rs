@@ -2,21 +2,21 @@
 
 use crate::named::Named;
 use groundplan::parameters::{Parameter, Range};
-use groundplan::{ParameterError, Parameters, TABLE, Value};
+use groundplan::{ParameterError, Parameters, Value};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyString};
 
 /// Parameters, those that are named being set.
 pub fn read(dict: &Bound<'_, PyDict>) -> PyResult<Parameters> {
+    let raised = |fault: ParameterError| raise(dict.py(), &fault);
     let mut parameters = Parameters::default();
     for (name, value) in dict {
         let name: String = name.extract()?;
         // A name that there is not is told before a value that no parameter has.
-        let is_known = TABLE.iter().any(|row| row.name == name);
-        let value = if is_known { to_value(&name, &value)? } else { Value::Auto };
-        parameters.set(&name, value).map_err(|fault| raise(dict.py(), &fault))?;
+        let parameter = Parameter::named(&name).map_err(raised)?;
+        parameter.put(&mut parameters, to_value(&name, &value)?).map_err(raised)?;
     }
-    parameters.check().map_err(|fault| raise(dict.py(), &fault))?;
+    parameters.check().map_err(raised)?;
     Ok(parameters)
 }
 

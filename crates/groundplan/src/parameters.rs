@@ -228,10 +228,7 @@ impl Parameters {
     /// # Errors
     /// When there is no such parameter (the nearest name is the hint) or the value is out of its range.
     pub fn set(&mut self, name: &str, value: Value) -> Result<(), ParameterError> {
-        let row = TABLE.iter().find(|row| row.name == name).ok_or_else(|| unknown(name))?;
-        let value = row.admit(value)?;
-        (row.set)(self, value);
-        Ok(())
+        Parameter::named(name)?.put(self, value)
     }
 
     /// Holds parameters against one another, once all that are asked for are set: no least is above its greatest.
@@ -267,6 +264,23 @@ impl Parameters {
 }
 
 impl Parameter {
+    /// The parameter of a name.
+    ///
+    /// # Errors
+    /// When there is none (the nearest name is the hint).
+    pub fn named(name: &str) -> Result<&'static Self, ParameterError> {
+        TABLE.iter().find(|row| row.name == name).ok_or_else(|| unknown(name))
+    }
+
+    /// Sets it.
+    ///
+    /// # Errors
+    /// When the value is out of its range.
+    pub fn put(&self, parameters: &mut Parameters, value: Value) -> Result<(), ParameterError> {
+        (self.set)(parameters, self.admit(value)?);
+        Ok(())
+    }
+
     fn admit(&self, value: Value) -> Result<Value, ParameterError> {
         let within = |n: &f64, low: f64, high: f64| *n >= low && *n <= high;
         let good = match (&value, self.range) {

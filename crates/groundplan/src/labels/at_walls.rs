@@ -1,7 +1,8 @@
 //! Racks at walls: goods stand before a wall, and hide it but for gaps between them and what of it is beyond their ends.
 
-use super::beside::{placed, wider};
+use super::beside::placed;
 use super::corridors::Strip;
+use super::ends::wider;
 use super::racks::{Crossings, Row, SAME, lines_behind, without};
 use super::turned::Turned;
 use super::whole::{RIM, trimmed};

@@ -69,13 +69,9 @@ pub fn placed(views: &[Turned], things: impl Iterator<Item = (usize, [f64; 2], [
     placed
 }
 
-/// Ends with so much more at both, metres.
-pub fn wider([low, high]: [f64; 2], by: f64) -> [f64; 2] {
-    [low - by, high + by]
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::ends::wider;
     use super::*;
 
     #[test]

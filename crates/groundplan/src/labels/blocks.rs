@@ -1,7 +1,8 @@
 //! Blocks: racks that are known by themselves, be there no aisle beside them: taken between two lines that are seen,
 //! with floor before both, oblong, and of a depth that others on the map have too.
 
-use super::beside::{Beside, placed, wider};
+use super::beside::{Beside, placed};
+use super::ends::wider;
 use super::near::Near;
 use super::racks::{DEPTH, Row, apart};
 use super::runs::{close, runs};

@@ -71,10 +71,9 @@ pub fn widest(strips: &[Strip]) -> f64 {
     strips.iter().map(Strip::width).fold(0.0, f64::max)
 }
 
-/// Corridors along every direction, in the order of the directions: of each those between lines by their places, and
-/// then the ragged ones, the best first. And ragged ways over such as are too short by themselves, what walls leave of others,
-/// and what goes on beyond the ends of those.
-pub fn find(evidence: &Evidence, views: &[Turned]) -> (Vec<Strip>, [Vec<Strip>; 3]) {
+/// Corridors along every direction, in the order of the directions: the sure ones are of each those between lines by their
+/// places, and then the ragged ones, the best first.
+pub fn find(evidence: &Evidence, views: &[Turned]) -> Ways {
     // Of few views one may be done long before another, which then has all threads; but of large ones each thread lays out
     // rows, for which there is not room enough.
     let is_shared = views.len() >= evidence.threads || views.iter().any(Turned::is_large);
@@ -95,11 +94,11 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> (Vec<Strip>, [Vec<Strip>; 
     let (known, ragged): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     let mut strips = known.concat();
     let mut placed = placed(views, strips.iter().map(Strip::place));
-    let mut others = [Vec::new(), Vec::new(), Vec::new()];
+    let mut others = Ways::default();
     for Ways { mut sure, over, cut, on } in ragged {
-        others[0].extend(over);
-        others[1].extend(cut);
-        others[2].extend(on);
+        others.over.extend(over);
+        others.cut.extend(cut);
+        others.on.extend(on);
         sure.retain(|way| !is_askew_in(views, way, &strips, &placed));
         for way in sure {
             placed[way.direction].add(strips.len(), way.along, way.across);
@@ -119,10 +118,10 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> (Vec<Strip>, [Vec<Strip>; 
     });
     strips.extend(more.into_iter().flatten());
     strips.sort_by_key(|strip| strip.direction);
-    for ways in &mut others {
+    for ways in [&mut others.over, &mut others.cut, &mut others.on] {
         ways.retain(|way| !is_askew_in(views, way, &strips, &placed));
     }
-    (strips, others)
+    Ways { sure: strips, ..others }
 }
 
 /// True when a strip's middle lies in one of others, by their direction and place, that runs nearly the same way.

@@ -1,9 +1,10 @@
 //! The lines of one direction as sides of strips, and the best of the strips between them.
 
 use super::Evidence;
-use super::beside::{Beside, wider};
+use super::beside::Beside;
 use super::columns::{BAY, Side};
 use super::corridors::{Strip, UNTOLD, pitches};
+use super::ends::{overlap, wider};
 use super::pieces::{BESIDE, INNER};
 use super::recall::{Key, Recall};
 use super::sums::What;
@@ -240,7 +241,7 @@ impl<'a> Family<'a> {
             if cut.1 <= from || to <= cut.0 {
                 continue;
             }
-            let shared = strip.across[1].min(rival.across[1]) - strip.across[0].max(rival.across[0]);
+            let shared = overlap(strip.across, rival.across);
             let beside = shared.abs() < INNER && !self.parts(strip, rival);
             if shared > RIVAL * strip.width().min(rival.width()) || beside {
                 let pieces = left.into_iter().flat_map(|(a, b)| [(a, b.min(cut.0)), (a.max(cut.1), b)]);

@@ -2,8 +2,9 @@
 //! that lead across rows do so through their bays.
 
 use super::Evidence;
-use super::beside::{Beside, placed, wider};
+use super::beside::{Beside, placed};
 use super::corridors::{self, Strip, UNTOLD};
+use super::ends::{around, overlap, shared, sorted, wider};
 use super::look::Look;
 use super::racks::{self, Row};
 use super::sections::{Columns, Free, WIDTH};
@@ -60,8 +61,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
 
 /// True when one strip lies in another of its direction.
 fn is_in(one: &Strip, two: &Strip) -> bool {
-    let shared = |a: [f64; 2], b: [f64; 2]| a[0].max(b[0]) < a[1].min(b[1]);
-    one.direction == two.direction && shared(one.along, two.along) && shared(one.across, two.across)
+    one.direction == two.direction && overlap(one.along, two.along) > 0.0 && overlap(one.across, two.across) > 0.0
 }
 
 /// A row with what lies beyond its ends up to the walls there, which both ways beside it end at, if that may be a way
@@ -120,17 +120,12 @@ fn left_between(strip: &Strip, crossed: &[Crossed]) -> Option<[f64; 2]> {
         return None;
     }
     let common = within.iter().fold(vec![strip.across], |common, row| {
-        let shared = common.iter().flat_map(|&one| row.between.iter().map(move |&two| both(one, two)));
-        shared.filter(is_wide).collect()
+        let both = common.iter().flat_map(|&one| row.between.iter().map(move |&two| shared(one, two)));
+        both.filter(is_wide).collect()
     });
     let width = |ends: &[f64; 2]| ends[1] - ends[0];
     let left = common.into_iter().max_by(|a, b| width(a).total_cmp(&width(b)))?;
     (width(&left) >= LEFT * strip.width()).then_some(left)
-}
-
-/// What two stretches share.
-fn both(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0].max(b[0]), a[1].min(b[1])]
 }
 
 /// True when a way may lead through.
@@ -180,11 +175,8 @@ pub fn leading_across([view, other]: [&Turned; 2], placed: &[Beside], row: &Row,
     // So far beyond a row's ends the middle of what meets its corner may cross it, at a sine of a half or more.
     let reach = widest + row.depth();
     let corners = view.rectangle(wider(row.along, reach), row.across);
-    let ends = [0, 1].map(|axis| {
-        let places = corners.iter().map(|&corner| other.place(corner)[axis]);
-        places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], place| [low.min(place), high.max(place)])
-    });
-    placed[other.direction].touching(ends[0], ends[1])
+    let [along, across] = [0, 1].map(|axis| around(corners.iter().map(|&corner| other.place(corner)[axis])));
+    placed[other.direction].touching(along, across)
 }
 
 /// A row that a strip leads across: in the strip's own places, and whether there is a way.
@@ -219,11 +211,10 @@ fn cross(
     // The strip's middle where the row's is, and places of the row's direction along the strip.
     let [s, u] = view.crossing(other, middle, strip.middle());
     let along = |v: f64| s + (v - middle) / sin;
-    let sorted = |ends: [f64; 2]| [ends[0].min(ends[1]), ends[0].max(ends[1])];
     let own = sorted(row.across.map(along));
     let reach = strip.width() / 2.0 / sin.abs();
-    let shared = own[1].min(strip.along[1]) - own[0].max(strip.along[0]);
-    if shared < ENTERS * (own[1] - own[0]) || u - reach >= row.along[1] || u + reach <= row.along[0] {
+    if overlap(own, strip.along) < ENTERS * (own[1] - own[0]) || u - reach >= row.along[1] || u + reach <= row.along[0]
+    {
         return None;
     }
     let sides = [u - reach, u + reach];
@@ -240,7 +231,7 @@ fn cross(
         open: way || passes,
         at_end,
         free,
-        between: open.iter().map(|&ends| both(sorted(ends.map(across)), strip.across)).filter(is_wide).collect(),
+        between: open.iter().map(|&ends| shared(sorted(ends.map(across)), strip.across)).filter(is_wide).collect(),
     })
 }
 
@@ -301,7 +292,7 @@ pub fn strip(view: &Turned, other: &Turned, row: &Row, [from, to]: [f64; 2], mid
     let ends = middles.map(|middle| s + (middle - v) / sin);
     Strip {
         direction: other.direction,
-        along: [ends[0].min(ends[1]), ends[0].max(ends[1])],
+        along: sorted(ends),
         across: [t - width / 2.0, t + width / 2.0],
         score: row.across[1] - row.across[0],
         bays: false,

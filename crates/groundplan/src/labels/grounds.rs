@@ -1,6 +1,7 @@
 //! The ground of racks that stand on legs, in the places of a view: it is taken, though the map shows floor there.
 
 use super::Evidence;
+use super::ends::{around, sorted};
 use super::racks::Row;
 use super::recall::Key;
 use super::turned::{Turned, rectangle};
@@ -54,7 +55,7 @@ impl Grounds {
     pub fn sides(&self) -> Vec<(f64, [f64; 2])> {
         let along =
             self.corners.iter().flat_map(sides).filter(|[a, b]| (a[1] - b[1]).abs() <= ASKEW * (a[0] - b[0]).abs());
-        along.map(|[a, b]| (f64::midpoint(a[1], b[1]), [a[0].min(b[0]), a[0].max(b[0])])).collect()
+        along.map(|[a, b]| (f64::midpoint(a[1], b[1]), sorted([a[0], b[0]]))).collect()
     }
 }
 
@@ -71,15 +72,13 @@ fn sides(corners: &[[f64; 2]; 4]) -> [[[f64; 2]; 2]; 4] {
 
 /// From where to where across corners lie.
 fn across(corners: &[[f64; 2]; 4]) -> [f64; 2] {
-    corners
-        .iter()
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], corner| [low.min(corner[1]), high.max(corner[1])])
+    around(corners.iter().map(|corner| corner[1]))
 }
 
 /// From where to where along a convex piece goes at a place across.
 fn crossed(corners: &[[f64; 2]; 4], v: f64) -> Option<[f64; 2]> {
     let met = sides(corners).into_iter().filter(|[a, b]| (a[1] <= v) != (b[1] <= v));
     let places = met.map(|[a, b]| a[0] + (b[0] - a[0]) * (v - a[1]) / (b[1] - a[1]));
-    let ends = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], u| [low.min(u), high.max(u)]);
+    let ends = around(places);
     (ends[0] < ends[1]).then_some(ends)
 }

@@ -2,7 +2,9 @@
 //! has no line for its other side, and yet the aisles between the rows lead there.
 
 use super::Evidence;
+use super::beside::{Beside, placed};
 use super::corridors::{Strip, UNTOLD};
+use super::ends::{around, overlap, sorted};
 use super::family;
 use super::gates::crossing;
 use super::junctions;
@@ -14,7 +16,7 @@ use super::through;
 use super::turned::Turned;
 use crate::grid::Frame;
 use crate::parameters::Parameters;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// An aisle is looked along so far beyond its end for the wall, beside the widest way, metres.
 const SHORT: f64 = 6.0;
@@ -38,8 +40,7 @@ const CLEAR: f64 = 0.1;
 /// The ways with those before the heads of rows that are not known, or are so in part; none where there are no such.
 pub fn with(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], rows: &[Row]) -> Option<Vec<Strip>> {
     let (parameters, frame) = (evidence.parameters, &evidence.grid.frame);
-    let mut all = strips.to_vec();
-    let mut is_more = false;
+    let mut known = Known::new(views, strips);
     for view in views {
         let Some(other) = crossing(views, view.direction) else { continue };
         if libm::cos(other.angle - view.angle).abs() > SQUARE {
@@ -49,12 +50,12 @@ pub fn with(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
             for side in [0, 1] {
                 let heads = Heads { look, frame, view, other, strips, side, parameters };
                 for way in heads.ways(&chain) {
-                    is_more |= add(&mut all, way);
+                    known.add(way);
                 }
             }
         }
     }
-    is_more.then_some(all)
+    known.with_more()
 }
 
 /// Two aisles and the faces of the row between them.
@@ -68,15 +69,18 @@ struct Between {
 fn chains(strips: &[Strip], rows: &[Row], direction: usize) -> Vec<Vec<Between>> {
     let own = rows.iter().filter(|row| row.direction == direction);
     let pairs: BTreeMap<_, _> = own.filter_map(|row| row.between.map(|aisles| (aisles, row.across))).collect();
-    let mut sorted: Vec<Between> = pairs.into_iter().map(|(aisles, faces)| Between { aisles, faces }).collect();
-    sorted.sort_by(|a, b| strips[a.aisles[0]].middle().total_cmp(&strips[b.aisles[0]].middle()));
+    let mut in_order: Vec<Between> = pairs.into_iter().map(|(aisles, faces)| Between { aisles, faces }).collect();
+    in_order.sort_by(|a, b| strips[a.aisles[0]].middle().total_cmp(&strips[b.aisles[0]].middle()));
     let mut chains: Vec<Vec<Between>> = Vec::new();
-    for row in sorted {
-        let before = chains.iter_mut().find(|chain| chain.last().is_some_and(|last| last.aisles[1] == row.aisles[0]));
-        match before {
-            Some(chain) => chain.push(row),
-            None => chains.push(vec![row]),
+    // Of each aisle the chains that lead up to it.
+    let mut up_to: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+    for row in in_order {
+        let chain = up_to.get_mut(&row.aisles[0]).and_then(BTreeSet::pop_first).unwrap_or(chains.len());
+        if chain == chains.len() {
+            chains.push(Vec::new());
         }
+        chains[chain].push(row);
+        up_to.entry(row.aisles[1]).or_default().insert(chain);
     }
     chains
 }
@@ -144,12 +148,7 @@ impl Heads<'_> {
         let most = SHORT + self.parameters.labels_max_width;
         let away = if self.side == 0 { 1.0 } else { -1.0 };
         let ends = [wall + away * WALL, wall + away * most];
-        let before = Row {
-            direction: self.view.direction,
-            along: [ends[0].min(ends[1]), ends[0].max(ends[1])],
-            across: row.faces,
-            between: None,
-        };
+        let before = Row { direction: self.view.direction, along: sorted(ends), across: row.faces, between: None };
         let columns = Columns::new(self.look, self.frame, [self.view, self.other], &before, self.view.pitch);
         columns.first_stop(self.side == 0).map_or(most, |free| WALL + free)
     }
@@ -165,7 +164,7 @@ impl Heads<'_> {
         let inner = if self.side == 0 { wall + width } else { wall - width };
         let corners = [[wall, first.across[0]], [inner, last.across[1]]];
         let [one, two] = corners.map(|place| self.other.place(self.view.to_map(place)));
-        let [along, across] = [0, 1].map(|axis| [one[axis].min(two[axis]), one[axis].max(two[axis])]);
+        let [along, across] = [0, 1].map(|axis| sorted([one[axis], two[axis]]));
         let columns = self.other.column(along[0] + WALL)..self.other.column(along[1] - WALL);
         let margin = SIDES * width;
         let [low, high] = [across[0] + margin, across[1] - margin];
@@ -181,24 +180,43 @@ impl Heads<'_> {
             held: UNTOLD,
         };
         let middles = [first, last].map(|aisle| self.other.place(self.view.to_map([wall, aisle.middle()]))[0]);
-        let middles = [middles[0].min(middles[1]), middles[0].max(middles[1])];
-        is_clear.then_some(Head { way, middles })
+        is_clear.then_some(Head { way, middles: sorted(middles) })
     }
 }
 
-/// Adds a way in place of what is known of it; false where it is known to lead as far, from middle to middle.
-fn add(all: &mut Vec<Strip>, Head { mut way, middles: own }: Head) -> bool {
-    let is_part = |strip: &Strip| strip.direction == way.direction && ragged::is_beside(strip, &way);
-    let known = |strip: &Strip| strip.along[1].min(own[1]) - strip.along[0].max(own[0]);
-    let parts: Vec<usize> = (0..all.len()).filter(|&n| is_part(&all[n])).collect();
-    let longest = parts.iter().map(|&n| known(&all[n])).fold(0.0, f64::max);
-    if longest >= own[1] - own[0] - IN_LINE {
-        return false;
+/// The ways that are known, to which more are put in place of what was known of them.
+struct Known {
+    /// Without those that are part of another.
+    ways: Vec<Option<Strip>>,
+    placed: Vec<Beside>,
+    is_more: bool,
+}
+
+impl Known {
+    fn new(views: &[Turned], strips: &[Strip]) -> Self {
+        let placed = placed(views, strips.iter().map(Strip::place));
+        Self { ways: strips.iter().cloned().map(Some).collect(), placed, is_more: false }
     }
-    for n in parts.into_iter().rev() {
-        let part = all.remove(n);
-        way.along = [way.along[0].min(part.along[0]), way.along[1].max(part.along[1])];
+
+    /// With one more, unless it is known to lead as far, from middle to middle.
+    fn add(&mut self, Head { mut way, middles }: Head) {
+        let near = self.placed[way.direction].touching(way.along, way.across).into_iter();
+        let is_part = |n: &usize| self.ways[*n].as_ref().is_some_and(|known| ragged::is_beside(known, &way));
+        let parts: Vec<usize> = near.filter(is_part).collect();
+        let leads = parts.iter().flat_map(|&n| &self.ways[n]).map(|part| overlap(part.along, middles));
+        if leads.fold(0.0, f64::max) >= middles[1] - middles[0] - IN_LINE {
+            return;
+        }
+        for part in parts.into_iter().filter_map(|n| self.ways[n].take()) {
+            way.along = around(way.along.into_iter().chain(part.along));
+        }
+        self.placed[way.direction].add(self.ways.len(), way.along, way.across);
+        self.ways.push(Some(way));
+        self.is_more = true;
     }
-    all.push(way);
-    true
+
+    /// All, if there are more than there were.
+    fn with_more(self) -> Option<Vec<Strip>> {
+        self.is_more.then(|| self.ways.into_iter().flatten().collect())
+    }
 }

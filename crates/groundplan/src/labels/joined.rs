@@ -3,6 +3,7 @@
 use super::barriers;
 use super::beside::{Beside, placed};
 use super::corridors::{ASKEW, Strip};
+use super::ends::{overlap, shared, sorted};
 use super::turned::Turned;
 use crate::sets::Sets;
 
@@ -40,7 +41,7 @@ pub fn join(views: &[Turned], mut strips: Vec<Strip>, least: f64) -> Vec<Strip> 
     for (a, b) in pairs {
         let [a, b] = [a, b].map(|n| wholes.of(n as u32) as usize);
         if is_one(views, &strips, &placed, least, [a, b]) {
-            let across = shared(&strips[a], &strips[b]);
+            let across = shared(strips[a].across, strips[b].across);
             let (along, score) = ([strips[a].along[0], strips[b].along[1]], strips[a].score + strips[b].score);
             let bays = strips[a].bays && strips[b].bays;
             let is_ragged = strips[a].is_ragged || strips[b].is_ragged;
@@ -63,12 +64,10 @@ pub fn apart(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
     let lies_within = |n: usize, m: usize| {
         let (own, other) = (&strips[n], &strips[m]);
-        let together = own.along[1].min(other.along[1]) - own.along[0].max(other.along[0]);
-        let [low, high] = shared(own, other);
         let (length, longer) = (own.length(), other.length());
         (longer > length || longer == length && m < n)
-            && together > WITHIN * length
-            && high - low > WITHIN * own.width().min(other.width())
+            && overlap(own.along, other.along) > WITHIN * length
+            && overlap(own.across, other.across) > WITHIN * own.width().min(other.width())
     };
     let kept: Vec<bool> = (0..strips.len())
         .map(|n| {
@@ -87,12 +86,12 @@ pub fn apart(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
 fn lies_askew_on(views: &[Turned], strips: &[Strip], placed: &[Beside], n: usize) -> bool {
     let strip = &strips[n];
     let own = &views[strip.direction];
-    let sided = [strip.along[0].max(strip.held[0]), strip.along[1].min(strip.held[1])];
+    let sided = shared(strip.along, strip.held);
     let middle = sided.map(|u| own.to_map([u, strip.middle()]));
     let askew = |its: &&Turned| its.direction != own.direction && libm::sin(own.angle - its.angle).abs() < ASKEW;
     views.iter().filter(askew).any(|its| {
         let [from, to] = middle.map(|end| its.place(end));
-        let [along, across] = [0, 1].map(|axis| [from[axis].min(to[axis]), from[axis].max(to[axis])]);
+        let [along, across] = [0, 1].map(|axis| sorted([from[axis], to[axis]]));
         let is_larger = |m: usize| {
             let [size, larger] = [strip, &strips[m]].map(|strip| strip.length() * strip.width());
             larger > size || larger == size && m < n
@@ -103,16 +102,11 @@ fn lies_askew_on(views: &[Turned], strips: &[Strip], placed: &[Beside], n: usize
             let mut held: [f64; 2] = [0.0, 1.0];
             for (axis, sides) in [strips[m].along, strips[m].across].into_iter().enumerate() {
                 let at = sides.map(|side| (side - from[axis]) / (to[axis] - from[axis]));
-                held = [held[0].max(at[0].min(at[1])), held[1].min(at[0].max(at[1]))];
+                held = shared(held, sorted(at));
             }
             held[1] - held[0] > WITHIN
         })
     })
-}
-
-/// What two strips share, across.
-fn shared(one: &Strip, two: &Strip) -> [f64; 2] {
-    [one.across[0].max(two.across[0]), one.across[1].min(two.across[1])]
 }
 
 /// True when the way along one strip goes on as another, the next one; of all it is known where they lie, or lay.
@@ -123,16 +117,13 @@ fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], least: f64, [a,
     if a == b || one.direction != two.direction || gap < -1e-6 || gap > one.length().min(two.length()) {
         return false;
     }
-    let [low, high] = shared(one, two);
+    let [low, high] = shared(one.across, two.across);
     let (narrow, wide) = (one.width().min(two.width()), one.width().max(two.width()));
     let alike = if one.is_ragged || two.is_ragged { ALIKE_RAGGED } else { ALIKE };
     if high - low < least.max(SHARED * narrow) || narrow < alike * wide || gap > APART * f64::midpoint(narrow, wide) {
         return false;
     }
-    let is_between = |other: &Strip| {
-        other.along[0].max(between[0]) < other.along[1].min(between[1])
-            && other.across[0].max(low) < other.across[1].min(high)
-    };
+    let is_between = |other: &Strip| overlap(other.along, between) > 0.0 && overlap(other.across, [low, high]) > 0.0;
     if placed[one.direction].touching(between, [low, high]).into_iter().any(|n| is_between(&strips[n])) {
         return false;
     }

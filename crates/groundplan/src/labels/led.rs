@@ -1,8 +1,9 @@
 //! Ways whose sides are no lines, and what others tell of them: pieces between lines that they lie over, and ways that lead
 //! there.
 
-use super::beside::{Beside, wider};
+use super::beside::Beside;
 use super::corridors::{self, Strip};
+use super::ends::{overlap, wider};
 use super::turned::Turned;
 
 /// A way opens into another when its end is so near to the other's side, metres.
@@ -16,11 +17,10 @@ const CLUTTER: f64 = 0.1;
 /// to the way's ends: what stands on the floor narrows it no more than it does the piece.
 pub fn sided_by(views: &[Turned], way: Strip, pieces: &[Strip], placed: &[Beside]) -> Strip {
     let view = &views[way.direction];
-    let shared = |one: [f64; 2], two: [f64; 2]| one[1].min(two[1]) - one[0].max(two[0]);
     let is_under = |piece: &&Strip| {
         !piece.is_ragged
-            && shared(piece.along, way.along) > OVER * way.length()
-            && shared(piece.across, way.across) > OVER * way.width()
+            && overlap(piece.along, way.along) > OVER * way.length()
+            && overlap(piece.across, way.across) > OVER * way.width()
     };
     let near = placed[way.direction].touching(way.along, way.across).into_iter().map(|n| &pieces[n]);
     let Some(piece) = near.filter(is_under).max_by(|a, b| a.length().total_cmp(&b.length())) else { return way };
@@ -54,10 +54,10 @@ pub fn is_opened_into(views: &[Turned], way: &Strip, strips: &[Strip]) -> bool {
 pub fn goes_on_as(way: &Strip, strips: &[Strip], placed: &[Beside]) -> bool {
     let width = way.width();
     let follows = |strip: &Strip| {
-        let [low, high] = [strip.across[0].max(way.across[0]), strip.across[1].min(way.across[1])];
         let within = [strip.along[1] - way.along[0], way.along[1] - strip.along[0]];
         let beyond = [way.along[0] - strip.along[0], strip.along[1] - way.along[1]];
-        low < high && (0..2).any(|side| (0.0..=width).contains(&within[side]) && beyond[side] >= width)
+        overlap(strip.across, way.across) > 0.0
+            && (0..2).any(|side| (0.0..=width).contains(&within[side]) && beyond[side] >= width)
     };
     let near = placed[way.direction].touching(wider(way.along, width), way.across);
     near.into_iter().any(|n| follows(&strips[n]))

@@ -4,6 +4,7 @@
 
 use super::Evidence;
 use super::blocks;
+use super::ends::overlap;
 use super::frames::{AISLE, BACK, Frame, Legs, NEAR, frames};
 use super::grounds::on_map;
 use super::near::Near;
@@ -227,8 +228,8 @@ fn back_to_back(mut racks: Vec<Rack>) -> Vec<Rack> {
         let row = &rack.row;
         let is_back = |other: &&mut Rack| {
             let other = &other.row;
-            let shared = row.along[1].min(other.along[1]) - row.along[0].max(other.along[0]);
-            row.across[0] - other.across[1] <= BACK && shared >= SHARED * row.length().max(other.length())
+            row.across[0] - other.across[1] <= BACK
+                && overlap(row.along, other.along) >= SHARED * row.length().max(other.length())
         };
         let near = whole.iter_mut().rev().take_while(|other| row.across[0] - other.row.across[0] <= AISLE);
         if let Some(Rack { row: other, .. }) = near.into_iter().find(is_back) {

@@ -1,8 +1,8 @@
 //! Where corridors of other directions open into a line side by side: what lies there is no gap in a side, but the
 //! mouths of ways that are known.
 
-use super::beside::wider;
 use super::corridors::Strip;
+use super::ends::{sorted, wider};
 use super::turned::Turned;
 use std::ops::Range;
 
@@ -22,7 +22,8 @@ pub fn of(views: &[Turned], view: &Turned, strips: &[Strip]) -> Vec<Vec<Range<us
     for strip in others {
         let other = &views[strip.direction];
         let ends = wider(strip.along, NEAR + view.cell).map(|s| view.place(other.to_map([s, strip.middle()]))[1]);
-        for line in view.lines(ends[0].min(ends[1]), ends[0].max(ends[1])) {
+        let [low, high] = sorted(ends);
+        for line in view.lines(low, high) {
             if let Some(mouth) = mouth(views, view, view.offsets[line], strip) {
                 reaching[line].push((strip, mouth));
             }

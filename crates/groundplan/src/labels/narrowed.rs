@@ -1,8 +1,9 @@
 //! Ways past the ends of racks: one that racks across it reach into from its sides is as wide as what they leave of it, and
 //! one whose sides are no lines ends with the racks beside it, unless it leads on to something.
 
-use super::beside::{Beside, wider};
+use super::beside::Beside;
 use super::corridors::Strip;
+use super::ends::{around, overlap, shared, wider};
 use super::racks::{DEPTH, Row, SAME};
 use super::turned::Turned;
 
@@ -33,7 +34,7 @@ pub fn past(views: &[Turned], strips: &[Strip], racks: &[Row], reached: &[[f64; 
                 let near = near.filter(|[_, across]| beside[0] <= across[1] && across[0] <= beside[1]);
                 let ends = |[low, high]: [f64; 2], [from, to]: [f64; 2]| [low.min(from), high.max(to)];
                 let [from, to] = near.map(|[along, _]| along).fold(*reached, ends);
-                strip.along = [strip.along[0].max(from), strip.along[1].min(to)];
+                strip.along = shared(strip.along, [from, to]);
             }
         }
     }
@@ -42,12 +43,11 @@ pub fn past(views: &[Turned], strips: &[Strip], racks: &[Row], reached: &[[f64; 
 
 /// What is left of a strip between racks, each of which takes what is beyond it from the side that it is nearer to.
 fn between(strip: &Strip, racks: impl Iterator<Item = [[f64; 2]; 2]>) -> [f64; 2] {
-    let shared = |one: [f64; 2], two: [f64; 2]| one[1].min(two[1]) - one[0].max(two[0]);
     let mut left = strip.across;
     // At its ends it goes past what stands along the ways that it meets.
     let stretch = wider(strip.along, -strip.width());
     for [along, across] in racks {
-        if shared(along, stretch) < SAME || shared(across, strip.across) < SAME {
+        if overlap(along, stretch) < SAME || overlap(across, strip.across) < SAME {
             continue;
         }
         if f64::midpoint(across[0], across[1]) < strip.middle() {
@@ -61,10 +61,6 @@ fn between(strip: &Strip, racks: impl Iterator<Item = [[f64; 2]; 2]>) -> [f64; 2
 
 /// From where to where a rack stands, along and across a direction.
 fn place(view: &Turned, own: &Turned, rack: &Row) -> [[f64; 2]; 2] {
-    let corners = own.rectangle(rack.along, rack.across).into_iter().map(|corner| view.place(corner));
-    let ends = |axis: usize| {
-        let places = corners.clone().map(|corner| corner[axis]);
-        places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], place| [low.min(place), high.max(place)])
-    };
-    [ends(0), ends(1)]
+    let corners = own.rectangle(rack.along, rack.across);
+    [0, 1].map(|axis| around(corners.iter().map(|&corner| view.place(corner)[axis])))
 }

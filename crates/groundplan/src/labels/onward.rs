@@ -3,6 +3,7 @@
 
 use super::barriers;
 use super::corridors::Strip;
+use super::ends::overlap;
 use super::racks::SAME;
 use super::stretches::beyond;
 use super::turned::Turned;
@@ -17,14 +18,12 @@ const CLUTTER: f64 = 0.05;
 pub fn of(view: &Turned, way: &Strip, known: &[&Strip]) -> Vec<Strip> {
     let mut found = Vec::new();
     for own in known.iter().filter(|own| !own.is_ragged) {
-        let shared = own.across[1].min(way.across[1]) - own.across[0].max(way.across[0]);
-        if shared < SHARED * own.width().min(way.width()) {
+        if overlap(own.across, way.across) < SHARED * own.width().min(way.width()) {
             continue;
         }
         for along in [[way.along[0], own.along[0]], [own.along[1], way.along[1]]] {
             let on = Strip { along, across: own.across, is_ragged: false, ..way.clone() };
-            let is_beside =
-                |other: &&Strip| along[0].max(other.along[0]) < along[1].min(other.along[1]) - view.cell / 2.0;
+            let is_beside = |other: &&Strip| overlap(along, other.along) > view.cell / 2.0;
             if on.length() >= own.width() && !known.iter().any(is_beside) && leads_on(view, &on) {
                 found.push(on);
             }

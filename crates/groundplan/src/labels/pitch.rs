@@ -2,6 +2,7 @@
 //! leaves as future work.
 
 use super::Evidence;
+use super::ends::sorted;
 use super::turned::Turned;
 use crate::gradients::SPECK;
 use crate::on_line::OnLine;
@@ -120,8 +121,7 @@ fn specks(evidence: &Evidence, view: &Turned) -> Vec<(f64, Vec<i32>)> {
 
 /// What is not free on one side of a line: the columns' shares, summed up from the first.
 fn taken(view: &Turned, offset: f64, side: f64) -> Vec<f64> {
-    let ends = [offset + side * BESIDE.0, offset + side * BESIDE.1];
-    let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+    let [low, high] = sorted([offset + side * BESIDE.0, offset + side * BESIDE.1]);
     let mut sum = 0.0;
     let sums = view.all_blocked(low, high).into_iter().map(|blocked| {
         sum += blocked;

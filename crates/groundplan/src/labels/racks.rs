@@ -3,8 +3,9 @@
 //! A row is known by its two faces, be it half empty: it lies between neighbouring corridors of one direction, is cut
 //! where other corridors cross, and holds something.
 
-use super::beside::{Beside, placed, wider};
+use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
+use super::ends::{overlap, sorted, wider};
 use super::near::Near;
 use super::turned::{Turned, least_sine};
 
@@ -200,10 +201,8 @@ impl<'a> Crossings<'a> {
 pub fn is_within_row(strips: &[Strip], placed: &[Beside], n: usize) -> bool {
     let own = &strips[n];
     let near = placed[own.direction].touching(own.along, wider(own.across, 2.0 * DEPTH.1));
-    let beside = |other: &&Strip| {
-        let shared = other.along[1].min(own.along[1]) - other.along[0].max(own.along[0]);
-        shared > own.length() / 2.0 && other.length() > LONGER * own.length()
-    };
+    let beside =
+        |other: &&Strip| overlap(other.along, own.along) > own.length() / 2.0 && other.length() > LONGER * own.length();
     let strips = || near.iter().map(|&n| &strips[n]).filter(beside);
     let below = strips().map(|s| s.across[1]).filter(|v| *v <= own.across[0] + SAME);
     let above = strips().map(|s| s.across[0]).filter(|v| *v >= own.across[1] - SAME);
@@ -261,7 +260,7 @@ fn crossed(view: &Turned, other: &Turned, crossing: &Strip, extent: [f64; 2], ac
     let middle = f64::midpoint(across[0], across[1]);
     let ends = crossing.across.map(|t| view.crossing(other, middle, t));
     let within = ends.iter().any(|[s, _]| (extent[0]..=extent[1]).contains(s));
-    within.then(|| [ends[0][1].min(ends[1][1]), ends[0][1].max(ends[1][1])])
+    within.then(|| sorted([ends[0][1], ends[1][1]]))
 }
 
 /// Share of a row that is not free.

@@ -4,6 +4,7 @@
 
 use super::beside::Beside;
 use super::corridors::{self, Strip};
+use super::ends::overlap;
 use super::onward;
 use super::stretches::{Candidate, Found, Held, beyond, depth, fewest_seen, ragged};
 use super::sums::What;
@@ -30,8 +31,9 @@ const MOST: f64 = 0.75;
 const REACHED: f64 = 0.05;
 
 /// What may be a way.
+#[derive(Default)]
 pub struct Ways {
-    /// Beside those that are known, the best first.
+    /// Those that are, of ragged ones the best first.
     pub sure: Vec<Strip>,
     /// Over known ones that are too short by themselves, for where these turn out to be none.
     pub over: Vec<Strip>,
@@ -153,9 +155,7 @@ impl Short {
 
 /// True when two strips share so much of their width that one of them is too much.
 pub fn is_beside(one: &Strip, two: &Strip) -> bool {
-    let shared = one.across[1].min(two.across[1]) - one.across[0].max(two.across[0]);
-    let together = one.along[1].min(two.along[1]) - one.along[0].max(two.along[0]);
-    together > 0.0 && shared > SHARED * one.width().min(two.width())
+    overlap(one.along, two.along) > 0.0 && overlap(one.across, two.across) > SHARED * one.width().min(two.width())
 }
 
 /// What others at its ends leave of a way, where that is most of it.

@@ -4,6 +4,7 @@
 use super::beside::{Beside, placed};
 use super::blocks::Standing;
 use super::corridors::{self, ALONE, Strip};
+use super::ends::{overlap, shared};
 use super::gates;
 use super::heads;
 use super::joined;
@@ -13,7 +14,7 @@ use super::legs;
 use super::look::Look;
 use super::narrowed;
 use super::racks::{self, Row};
-use super::ragged;
+use super::ragged::{self, Ways};
 use super::rooms::{Bar, Space};
 use super::sided;
 use super::turned::Turned;
@@ -129,8 +130,8 @@ pub struct Plan {
 impl Plan {
     fn of(evidence: &Evidence, look: &Look, views: &[Turned], on_legs: &[Row]) -> Self {
         let least = evidence.parameters.labels_min_width;
-        let (found, [over, cut, on]) = corridors::find(evidence, views);
-        let mut found = joined::join(views, [found, on.clone()].concat(), least);
+        let Ways { sure, over, cut, on } = corridors::find(evidence, views);
+        let mut found = joined::join(views, [sure, on.clone()].concat(), least);
         // What goes on beyond a way is none by itself.
         let beyond = placed(views, on.iter().map(Strip::place));
         let is_on =
@@ -275,7 +276,7 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<S
         // What is shut may be so by walls that its sides do not reach: then it is judged anew without the way to them.
         let shorter = |n: usize| {
             let Strip { along, held, .. } = strips[n];
-            let short = [along[0].max(held[0]), along[1].min(held[1])];
+            let short = shared(along, held);
             let is_so = !stays[n] && met[n].is_empty() && short != along && short[0] < short[1] && is_shut(n);
             is_so.then_some((n, short))
         };
@@ -294,10 +295,9 @@ fn recurs(strips: &[Strip], placed: &[Beside], n: usize, apart: (f64, f64)) -> b
     let own = &strips[n];
     let alike = |one: f64, two: f64| (one - two).abs() <= ALIKE * one.max(two);
     let is_like = |other: &&Strip| {
-        let shared = own.along[1].min(other.along[1]) - own.along[0].max(other.along[0]);
         other.direction == own.direction
             && alike(own.width(), other.width())
-            && shared >= (1.0 - ALIKE) * own.length().max(other.length())
+            && overlap(own.along, other.along) >= (1.0 - ALIKE) * own.length().max(other.length())
     };
     let reach = OTHERS as f64 * (own.width() + apart.1);
     let around = placed[own.direction].touching(own.along, [own.middle() - reach, own.middle() + reach]);

@@ -2,6 +2,7 @@
 
 use super::bays;
 use super::corridors::Strip;
+use super::ends::wider;
 use super::junctions::Meeting;
 use super::names::{Named, names};
 use super::near::Near;
@@ -76,8 +77,10 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
     };
     let first = labels.len() + rows.len();
     let corridors = rooms::Corridor::among(&labels);
-    let wider = |[low, high]: [f64; 2]| [low - pillars::RIM, high + pillars::RIM];
-    let rack = |row: &Row| rectangle(&views[row.direction], wider(row.along), wider(row.across));
+    let rack = |row: &Row| {
+        let [along, across] = [row.along, row.across].map(|ends| wider(ends, pillars::RIM));
+        rectangle(&views[row.direction], along, across)
+    };
     let grounds: Vec<_> = rows.iter().map(rack).collect();
     let [racks, rooms, pillars] = side_by_side(evidence.threads, |side| {
         let squares = &squares;
@@ -117,10 +120,10 @@ fn racked(
     // What a rack leaves of the row between two corridors leads from one to the other, and is a way too.
     let racks: BTreeSet<_> = rows.iter().filter_map(|rack| rack.between).collect();
     let left = between.iter().filter(|row| row.between.is_some_and(|pair| racks.contains(&pair)));
-    let grounds = rows.iter().chain(left).map(|row| {
-        let wider = |[low, high]: [f64; 2]| [low - RIM, high + RIM];
-        rectangle(&views[row.direction], wider(row.along), wider(row.across))
-    });
+    let grounds = rows
+        .iter()
+        .chain(left)
+        .map(|row| rectangle(&views[row.direction], wider(row.along, RIM), wider(row.across, RIM)));
     Racked {
         ways: corridors.chain(grounds).collect(),
         grounds: rows.iter().map(|row| rectangle(&views[row.direction], row.along, row.across)).collect(),

@@ -4,6 +4,7 @@
 //! free at one place is told by how much of all of them is free elsewhere.
 
 use super::corridors::Strip;
+use super::ends::{overlap, shared, sorted};
 use super::gates;
 use super::racks::Row;
 use super::sections::{Columns, WIDTH};
@@ -102,7 +103,7 @@ impl<'a> Through<'a> {
         // From where to where they lead through each row.
         let mut taken: Vec<Vec<[f64; 2]>> = vec![Vec::new(); self.rows.len()];
         let is_taken = |taken: &[Vec<[f64; 2]>], common: &Common| {
-            common.rows.iter().any(|&row| taken[row].iter().any(|&ends| shared(ends, common.ends) > 0.0))
+            common.rows.iter().any(|&row| taken[row].iter().any(|&ends| overlap(ends, common.ends) > 0.0))
         };
         // What is known to be a way is no longer what chance makes, and others are as wide.
         loop {
@@ -140,7 +141,7 @@ impl<'a> Through<'a> {
         }
         for &next in &self.above[last] {
             for open in &self.open[next] {
-                let both = [ends[0].max(open[0]), ends[1].min(open[1])];
+                let both = shared(ends, *open);
                 if both[1] - both[0] >= WIDTH.0 {
                     rows.push(next);
                     self.follow(rows, both, found);
@@ -222,11 +223,6 @@ pub fn widest_at_wall(beside: f64) -> f64 {
     AT_WALL.0.min(AT_WALL.1 * beside)
 }
 
-/// How much two stretches share.
-fn shared(one: [f64; 2], two: [f64; 2]) -> f64 {
-    one[1].min(two[1]) - one[0].max(two[0])
-}
-
 impl Seen<'_> {
     fn middle(&self) -> f64 {
         f64::midpoint(self.row.across[0], self.row.across[1])
@@ -236,7 +232,6 @@ impl Seen<'_> {
     fn open(&self) -> Vec<[f64; 2]> {
         let [view, other] = self.views;
         let place = |u: f64| other.place(view.to_map([u, self.middle()]))[1];
-        let sorted = |ends: [f64; 2]| [ends[0].min(ends[1]), ends[0].max(ends[1])];
         self.columns.open().into_iter().map(|ends| sorted(ends.map(place))).collect()
     }
 
@@ -249,7 +244,7 @@ impl Seen<'_> {
     /// True when a stretch is as wide as a bay, or as some beside one another.
     fn is_as_bays(&self, ends: [f64; 2]) -> bool {
         let [one, two] = ends.map(|end| self.along(end));
-        self.columns.is_as_bays([one.min(two), one.max(two)])
+        self.columns.is_as_bays(sorted([one, two]))
     }
 
     /// True when a stretch goes on beyond an end of the row.
@@ -266,6 +261,6 @@ impl Seen<'_> {
     fn strip(&self, ends: [f64; 2]) -> Strip {
         let [view, other] = self.views;
         let [from, to] = ends.map(|end| self.along(end));
-        gates::strip(view, other, self.row, [from.min(to), from.max(to)], self.middles)
+        gates::strip(view, other, self.row, sorted([from, to]), self.middles)
     }
 }

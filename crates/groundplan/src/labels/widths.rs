@@ -1,7 +1,8 @@
 //! Ways across rows are of one width: what leads through all rows of a place tells what leads through some of them.
 
-use super::beside::{Beside, placed, wider};
+use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
+use super::ends::{overlap, wider};
 use super::gates::{crossing, leading_across};
 use super::racks::{self, Row};
 use super::turned::Turned;
@@ -162,10 +163,7 @@ impl Crossed {
             let rest = own.iter().map(led).fold(strips[n].length(), |rest, led| rest - led);
             let next = || own.iter().flat_map(|&m| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]));
             let goes_on = next().any(|&m| place(n, &rows[m].0, rows[m].1).is_some_and(|s| !crosses(n, s)));
-            let is_in_line = |&other: &usize| {
-                let [one, two] = [n, other].map(|n| strips[n].across);
-                other != n && one[0].max(two[0]) < one[1].min(two[1])
-            };
+            let is_in_line = |&other: &usize| other != n && overlap(strips[n].across, strips[other].across) > 0.0;
             let is_led_on = next().any(|&m| through[m].iter().any(is_in_line));
             Self { rows: own.len(), rest, goes_on, is_led_on }
         };

@@ -71,8 +71,16 @@ impl Blocks {
     }
 
     /// The eight blocks around one that is not on the border.
-    pub fn around(&self, block: usize) -> [usize; 8] {
+    pub fn beside(&self, block: usize) -> [usize; 8] {
         let (below, above) = (block - self.width, block + self.width);
         [below - 1, below, below + 1, block - 1, block + 1, above - 1, above, above + 1]
+    }
+
+    /// What blocks have, of the eight around one that is not on the border in the same order; read three by three, which
+    /// is faster than one by one.
+    pub fn around(&self, block: usize, all: &[u32]) -> [u32; 8] {
+        let three = |middle: usize| <[u32; 3]>::try_from(&all[middle - 1..middle + 2]).unwrap_or_default();
+        let [below, own, above] = [block - self.width, block, block + self.width].map(three);
+        [below[0], below[1], below[2], own[0], own[2], above[0], above[1], above[2]]
     }
 }

@@ -103,7 +103,7 @@ impl<'a> Window<'a> {
 
     /// The shortest closure through a block or one beside it, and the pixel in its middle.
     fn narrowest(&self, block: usize) -> Option<([usize; 2], Bar)> {
-        let beside = std::iter::once(block).chain(self.blocks.around(block));
+        let beside = std::iter::once(block).chain(self.blocks.beside(block));
         let free = beside.filter(|&block| self.blocks.clearance[block] != 0);
         let pixels = free.map(|block| self.blocks.widest(block, self.pixels));
         let is_narrow =
@@ -122,9 +122,7 @@ impl<'a> Window<'a> {
         let least = (NARROW * NARROW * self.narrows[0]).ceil().max(1.0) as u32;
         for block in self.blocks.by_clearance(least) {
             let block = block as usize;
-            let three = |middle: usize| <[u32; 3]>::try_from(&basins[middle - 1..middle + 2]).unwrap_or_default();
-            let [below, own, above] = [block - self.blocks.width, block, block + self.blocks.width].map(three);
-            let around = [below[0], below[1], below[2], own[0], own[2], above[0], above[1], above[2]];
+            let around = self.blocks.around(block, &basins);
             // Mostly all are of one.
             let most = around.into_iter().fold(0, u32::max);
             let others: u32 = around.iter().map(|&basin| u32::from(basin != 0 && basin != most)).sum();
