@@ -110,6 +110,7 @@ def test_a_map_that_cannot_be_read_is_named_with_its_value(case: str, tmp_path: 
 def test_a_slip_of_the_pen_in_a_map_s_name_is_put_right(tmp_path: Path, capsys: Capture) -> None:
     write_map(tmp_path)
     assert call(capsys, "survey", "hal.yaml").err.endswith("hint: did you mean hall.yaml?\n")
+    assert call(capsys, "survey", "attic.yaml").err.endswith(f"hint: it was sought in {tmp_path}\n")
     assert call(capsys, "route", "gone", "1,1", "2,2").err.endswith(f"hint: it was sought in {tmp_path}\n")
     assert call(capsys, "survey", "maps/hall.yaml").err.endswith("hint: there is no directory maps\n")
 

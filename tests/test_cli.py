@@ -79,6 +79,7 @@ def test_no_command_shows_the_help_and_is_wrong_usage(capsys: Capture) -> None:
         ("survey hall.yaml --set lines.snrr=4", "there is no parameter lines.snrr", "did you mean lines.snr?"),
         ("survey hall.yaml --set lines.snr=-4", "lines.snr cannot be -4", "lines.snr takes 0 to 1000"),
         ("survey hall.yaml --set lines.snr", "'lines.snr' is not name=value", "for example --set lines.snr=4"),
+        ("survey hall.yaml --detail medium", "'medium' is neither coarse nor fine nor a number", "survey --help"),
         ("survey hall.yaml --detail 7", "lines.detail cannot be 7", "coarse, fine"),
         ("figures s.json --format gif", "'gif' is none of png, svg, pdf", "groundplan figures --help"),
         ("simulate", "PLACE", "groundplan simulate --help"),

@@ -17,7 +17,7 @@ from PIL import Image
 import groundplan
 from groundplan import Map, Survey
 from groundplan._shapes import readable
-from groundplan.figures import _labels, _names, _panels, _style, draw_figures, draw_survey
+from groundplan.figures import _labelled, _labels, _names, _panels, _style, draw_figures, draw_survey
 from groundplan.figures._underlay import underlay
 
 FREE_PIXEL, UNKNOWN_PIXEL, OCCUPIED_PIXEL = 254, 205, 0
@@ -176,6 +176,13 @@ def test_names_do_not_stand_over_one_another() -> None:
     # The large one steps aside, the one that has no room has no name.
     assert text.get_text() == "R01"
     assert text.get_position() != (5.0, 5.0)
+
+
+def test_a_map_of_kilometres_has_its_size_in_plain_figures() -> None:
+    sizes = {0.05: "0.25 × 0.3 m", 2.0: "10 × 12 m", 246.9: "1234 × 1481 m", 5000.0: "25000 × 30000 m"}
+    for resolution, said in sizes.items():
+        map = groundplan.from_array(np.full((6, 5), FREE_PIXEL, dtype=np.uint8), resolution)
+        assert _labelled.summary(groundplan.survey(map))[0].startswith(f"{said} at ")
 
 
 @pytest.mark.parametrize("width", [2.5, 3.6, 9.0])

@@ -270,6 +270,8 @@ def test_the_command_prints_the_way_and_draws_it(
     none = call(capsys, "route", "shut", "1.5,3.0", "6.5,1.2")
     assert (none.code, none.out) == (4, "")
     assert "no way between (1.5, 3) and (6.5, 1.2)" in none.err
+    assert none.err.endswith("hint: a smaller clearance may leave room\n")
+    assert "hint" not in call(capsys, "route", "shut", "1.5,3.0", "6.5,1.2", "--clearance", "0").err
     wrong = call(capsys, "route", "open", "-1.5,3", "6.5,1")
     assert wrong.code == 2
     assert "(-1.5, 3) lies outside the map" in wrong.err

@@ -80,5 +80,7 @@ def nearest(path: str | os.PathLike[str]) -> str:
         beside = sorted(entry.name for entry in wanted.parent.iterdir())
     except OSError:
         return f"there is no directory {wanted.parent}"
-    like = get_close_matches(wanted.name, beside, 1)
+    # An ending that many files have makes no two names alike.
+    alike = [name for name in beside if get_close_matches(wanted.stem, [Path(name).stem])]
+    like = get_close_matches(wanted.name, alike, 1)
     return f"did you mean {wanted.with_name(like[0])}?" if like else f"it was sought in {wanted.parent.absolute()}"

@@ -27,6 +27,8 @@ Place: TypeAlias = "Sequence[float] | Floats | str | int"
 
 #: What a place may be, as a hint.
 PLACE = "a place is a point X,Y in metres, a label's name, or a face's id"
+#: What may help where there is no way, or no room to stand, as a hint.
+LESS = "a smaller clearance may leave room"
 
 #: Clearances whose free space is kept ready.
 KEPT = 4
@@ -161,7 +163,7 @@ class Queries:
         open = ways.nearest(float(middle[0]), float(middle[1]), reach)
         if open is None:
             said = f"no point of {place!r} is {clearance:g} m from what is occupied"
-            raise ParameterError("route.blocked", said, "a smaller clearance may leave room")
+            raise ParameterError("route.blocked", said, LESS)
         return open[0], open[1]
 
     def _named(self, name: str) -> Label:
@@ -186,7 +188,7 @@ class Queries:
             raise ParameterError("route.outside", f"({x:g}, {y:g}) lies outside the map", within)
         if not ways.is_open(x, y):
             nearest = ways.nearest(x, y, 2.0)
-            hint = "a smaller clearance may leave room"
+            hint = LESS
             if nearest:
                 hint = f"the nearest point that is, is ({nearest[0]:.2f}, {nearest[1]:.2f})"
             said = f"({x:g}, {y:g}) is not free and {clearance:g} m from what is occupied"

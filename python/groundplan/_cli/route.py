@@ -73,6 +73,10 @@ def run(arguments: argparse.Namespace) -> None:
         terminal.say(
             "error", f"there is no way between {ends} that keeps {arguments.clearance:g} m from what is occupied"
         )
+        if arguments.clearance > 0:
+            from groundplan._queries import LESS
+
+            terminal.say("hint", LESS)
         raise SystemExit(NO_WAY)
     if arguments.json:
         answer = {

@@ -121,7 +121,12 @@ class _Set(argparse.Action):
 
 
 def _detail(text: str) -> Any:
-    return text if text in ("coarse", "fine") else number(text)
+    if text in ("coarse", "fine"):
+        return text
+    try:
+        return number(text)
+    except argparse.ArgumentTypeError:
+        raise argparse.ArgumentTypeError(f"{text!r} is neither coarse nor fine nor a number") from None
 
 
 def settings(arguments: argparse.Namespace) -> dict[str, Any]:

@@ -34,11 +34,16 @@ def summary(survey: Survey) -> list[str]:
     angles = ", ".join(degrees(angle) for angle in survey.directions.angles[:4])
     more = ", …" if len(survey.directions) > 4 else ""
     return [
-        f"{wide:.3g} × {high:.3g} m at {frame.resolution:.3g} m",
+        f"{_metres(wide)} × {_metres(high)} m at {frame.resolution:.3g} m",
         counted(len(survey.directions), "direction") + (f" ({angles}{more})" if angles else ""),
         counted(len(survey.lines), "line"),
         counted(len(survey.subdivision.areas), "face"),
     ]
+
+
+def _metres(length: float) -> str:
+    """Three figures, or all before the point."""
+    return f"{length:.0f}" if length >= 100 else f"{length:.3g}"
 
 
 def degrees(angle: float) -> str:
