@@ -46,6 +46,8 @@ def test_neighbours_know_each_other_and_an_aisle_knows_its_junctions_and_racks(t
     assert beside[:3] == ["J04", "J05", "J06"]
     assert sorted(beside[3:]) == ["S2-03", "S2-08", "S3-03", "S3-08"]
     assert by_id["A03"]["region"] == "R3-05"
+    # A rack's own ground is in no region, but its aisles are.
+    assert {row["region"] for row in by_id.values() if row["kind"] == "rack"} == {"R3-05"}
 
 
 def test_names_come_back_in_one_line(tmp_path: Path) -> None:

@@ -133,3 +133,19 @@ def test_a_table_that_nobody_would_turn_ends_and_says_where_the_rest_is(
     more = len(demo().labels) - 20
     assert any(f"Places; {more} more are in the table that --to csv writes" in sheet for sheet in sheets)
     assert row(sheets, "A01") and not any("S2-08  " in sheet for sheet in sheets)
+
+
+def test_a_place_with_many_neighbours_has_them_all_in_as_many_rows_as_they_take(tmp_path: Path) -> None:
+    sheets = text(once(demo(), "pdf", tmp_path))
+    (table,) = (sheet for sheet in sheets if "Neighbours" in sheet)
+    said = table[table.index("\nA03 ") : table.index("\nA04 ")]
+    assert sorted(re.findall(r"[JS]\d[\d-]+", said)) == ["J04", "J05", "J06", "S2-03", "S2-08", "S3-03", "S3-08"]
+
+
+def test_the_sheets_of_a_table_count_places_and_not_rows() -> None:
+    from groundplan.export import _report
+
+    rows = [[name, line] for name in map(str, range(1, 21)) for line in "abc"]
+    rows = [[name if line == "a" else "", line] for name, line in rows]
+    titles = [sheet.texts[0].get_text() for sheet in _report.tables("Places", ("Name", "What"), rows, (2.0, 2.0))]
+    assert titles == ["Places, 1 to 12 of 20", "Places, 12 to 20 of 20"]

@@ -77,17 +77,30 @@ def places(survey: Survey) -> list[Place]:
     names = _names(survey)
     ids = unique(slug(name) or label["kind"] for name, label in zip(names, survey.labels, strict=True))
     found = [_place(n, ids[n], names[n], label) for n, label in enumerate(survey.labels)]
-    regions = [place for place in found if place.kind == "region" and place.shape is not None]
-    for place in found:
-        if place.kind not in ("region", "door"):
-            point = shapely.Point(place.centre)
-            place.region = next((region.label for region in regions if region.shape.covers(point)), None)
     for a, b in _meetings(survey, found):
         found[a].neighbours.append(b)
         found[b].neighbours.append(a)
     for place in found:
         place.neighbours = sorted(set(place.neighbours))
+    _find_regions(found)
     return found
+
+
+def _find_regions(found: list[Place]) -> None:
+    """The region in which the middle of each place lies; a rack, whose ground is taken, is where its corridors are."""
+    regions = [place for place in found if place.kind == "region" and place.shape is not None]
+    others = [place for place in found if place.kind not in ("region", "door")]
+    if not regions or not others:
+        return
+    tree = shapely.STRtree([region.shape for region in regions])
+    points = shapely.points([place.centre for place in others])
+    # Of several regions the last in this order, the first of all, stays.
+    for n, k in sorted(tree.query(points, predicate="covered_by").T.tolist(), reverse=True):
+        others[n].region = regions[k].label
+    for rack in others:
+        if rack.kind == "rack" and rack.region is None:
+            beside = {found[n].region for n in rack.neighbours if found[n].kind == "corridor"}
+            rack.region = beside.pop() if len(beside) == 1 else None
 
 
 def _names(survey: Survey) -> list[str]:

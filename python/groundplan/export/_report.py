@@ -50,19 +50,24 @@ def plan(survey: Survey, view: Underlay, title: str, date: str) -> Figure:
         sheet.legend(handles=entries, loc="upper left", bbox_to_anchor=(at[0], at[1] - 0.24 / HIGH), **legend)
         top -= 0.5 + 0.19 * len(entries)
     said = [one_line(f"{warning.message} [{warning.code}]") for warning in survey.warnings]
-    wrapped = [line for text in said for line in _wrapped(text, LETTERS)] or ["none"]
+    lines = [line for text in said for line in wrapped(text, LETTERS)] or ["none"]
     room = max(1, int((top - FOOT - 0.4) / ROW))
-    if len(wrapped) > room:
-        wrapped = [*wrapped[: room - 1], "… more on the sheet of warnings"]
-    _lines(sheet, left, top, "Warnings", wrapped)
+    if len(lines) > room:
+        lines = [*lines[: room - 1], "… more on the sheet of warnings"]
+    _lines(sheet, left, top, "Warnings", lines)
     return sheet
 
 
 def tables(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], widths: Sequence[float]) -> Iterator[Figure]:
-    """A table on as many sheets as it takes; `widths` of the columns in inches, those of numbers negative."""
+    """A table on as many sheets as it takes; `widths` of the columns in inches, those of numbers negative.
+
+    A row whose first column is empty goes on with the one above it.
+    """
+    numbers = np.cumsum([bool(row[0]) for row in rows]).tolist()
     for start in range(0, max(len(rows), 1), ROWS):
         part = rows[start : start + ROWS]
-        more = f", {start + 1} to {start + len(part)} of {len(rows)}" if len(rows) > ROWS else ""
+        shown = numbers[start : start + ROWS]
+        more = f", {shown[0]} to {shown[-1]} of {numbers[-1]}" if len(rows) > ROWS else ""
         sheet = _sheet(title + more)
         top, left = HIGH - HEAD, MARGIN
         for column, (name, width) in enumerate(zip(head, widths, strict=True)):
@@ -71,18 +76,22 @@ def tables(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], width
             side = "right" if right else "left"
             sheet.text(x, top / HIGH, name, size=8, weight="bold", ha=side, va="top")
             for n, row in enumerate(part):
-                letters = int(abs(width) / 0.078)
                 y = (top - 0.26 - n * ROW) / HIGH
-                sheet.text(x, y, shortened(one_line(row[column]), letters), size=8, ha=side, va="top")
+                sheet.text(x, y, shortened(one_line(row[column]), letters(width)), size=8, ha=side, va="top")
             left += abs(width)
         yield sheet
+
+
+def letters(width: float) -> int:
+    """How many fit in a column of a table, inches."""
+    return int(abs(width) / 0.078)
 
 
 def warnings(survey: Survey) -> Iterator[Figure]:
     """The warnings in full."""
     lines: list[list[str]] = []
     for warning in survey.warnings:
-        parts = _wrapped(one_line(warning.message), 110)
+        parts = wrapped(one_line(warning.message), 110)
         lines += [[warning.code if n == 0 else "", part] for n, part in enumerate(parts)]
     if lines:
         yield from tables("Warnings", ("Code", "What it says"), lines, (2.0, 8.4))
@@ -122,5 +131,6 @@ def _lines(sheet: Figure, left: float, top: float, title: str, lines: Sequence[s
     return top - 0.24 - ROW * len(lines) - 0.2
 
 
-def _wrapped(text: str, letters: int) -> list[str]:
+def wrapped(text: str, letters: int) -> list[str]:
+    """Lines of so many letters at most; one that is empty where there is no text."""
     return textwrap.wrap(text, letters) or [""]

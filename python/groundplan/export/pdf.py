@@ -30,7 +30,7 @@ HEAD = ("Name", "Kind", "Width, m", "Length, m", "Area, m²", "In region", "Neig
 WIDTHS = (2.0, 1.5, -1.0, -1.0, -1.0, 1.2, 2.7)
 #: With more faces than this a figure of them all is a grey sheet, and takes a minute.
 MOST_FACES = 20_000
-#: Nobody turns more than fifty pages of a table.
+#: Nobody turns more pages of a table than the fifty of so many places, at a row each.
 MOST_PLACES = 50 * _report.ROWS
 #: Radiograms and directions are drawn over a map of so many pixels.
 SMALL = 1200
@@ -75,17 +75,20 @@ def _sheets(survey: Survey, title: str, when: datetime, map: Map | None) -> Iter
         yield connectivity(survey, small)
     kinds = list(dict.fromkeys(place.kind for place in found))
     in_order = sorted(found, key=lambda place: (kinds.index(place.kind), place.name))
-    rows = [_row(place, found) for place in in_order[:MOST_PLACES]]
+    rows = [row for place in in_order[:MOST_PLACES] for row in _rows(place, found)]
     if rows:
-        left = len(found) - len(rows)
+        left = max(0, len(found) - MOST_PLACES)
         title = f"Places; {left} more are in the table that --to csv writes" if left else "Places"
         yield from _report.tables(title, HEAD, rows, WIDTHS)
     yield from _report.warnings(survey)
 
 
-def _row(place: Place, found: list[Place]) -> list[str]:
+def _rows(place: Place, found: list[Place]) -> list[list[str]]:
+    """A place's row, and as many more as its neighbours take."""
     length = None if place.axis is None else float(shapely.LineString(place.axis).length)
     kind = f"{place.kind} ({place.use})" if place.use and place.use != place.kind else place.kind
     numbers = ["" if value is None else f"{value:.2f}" for value in (place.width, length, place.area)]
     region = "" if place.region is None else found[place.region].name
-    return [place.name, kind, *numbers, region, ", ".join(found[n].name for n in place.neighbours)]
+    first = [place.name, kind, *numbers, region]
+    neighbours = _report.wrapped(", ".join(found[n].name for n in place.neighbours), _report.letters(WIDTHS[-1]))
+    return [[*(first if n == 0 else [""] * len(first)), line] for n, line in enumerate(neighbours)]
