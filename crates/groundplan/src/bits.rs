@@ -145,8 +145,12 @@ pub fn word_where(flags: impl Iterator<Item = bool>) -> u64 {
     // Compared many at a time, as bytes, of which eight at a time have their lowest bits put side by side.
     let mut bytes = [[0u8; 8]; WORD / 8];
     bytes.as_flattened_mut().iter_mut().zip(flags).for_each(|(byte, flag)| *byte = u8::from(flag));
-    let bits = |eight: [u8; 8]| u64::from_le_bytes(eight).wrapping_mul(0x0102_0408_1020_4080) >> 56;
-    bytes.into_iter().rev().fold(0, |word, eight| word << 8 | bits(eight))
+    bytes.into_iter().rev().fold(0, |word, eight| word << 8 | bits_of(eight))
+}
+
+/// A bit for each of eight bytes that are 0 or 1.
+pub fn bits_of(eight: [u8; 8]) -> u64 {
+    u64::from_le_bytes(eight).wrapping_mul(0x0102_0408_1020_4080) >> 56
 }
 
 /// A bit for each of up to [`WORD`] pixels, mostly alike eight by eight: whether it is of the values that are wanted.

@@ -1,7 +1,7 @@
 //! II-D: O(edge), and where on the edges it lies, by the edge pixels that cover them.
 
 use crate::arrangement::Arrangement;
-use crate::bits;
+use crate::bits::{self, WORD, lowest};
 use crate::directions::Directions;
 use crate::gradients::Gradients;
 use crate::grid::{Frame, tidy};
@@ -9,6 +9,7 @@ use crate::lines::Lines;
 use crate::on_line::OnLine;
 use crate::parameters::Parameters;
 use crate::radiograms::weight;
+use std::ops::Range;
 
 /// Pixels this near to a line lie on it even when the line is sharper.
 const NEAREST_PIXELS: f64 = 1.5;
@@ -16,6 +17,8 @@ const NEAREST_PIXELS: f64 = 1.5;
 const FARTHEST_PIXELS: f64 = 3.0;
 /// A pixel covers this much of a line to both sides, so that the steps of a staircase leave no gaps.
 const COVER_PIXELS: f64 = 0.75;
+/// Of the line beyond the map's border no more than this is covered.
+const BEYOND: f64 = 2.0;
 
 /// How much of each edge is covered, and where.
 pub struct Covered {
@@ -37,6 +40,8 @@ pub struct Coverage<'a> {
 struct Family {
     angle: f64,
     heading: [f64; 2],
+    /// Places of the map along them, in whole words of bits.
+    words: Range<usize>,
     members: Vec<Member>,
 }
 
@@ -44,7 +49,7 @@ struct Member {
     offset: f64,
     reach: f64,
     line: usize,
-    /// What is covered, bit by bit; nothing until something is.
+    /// What is covered, bit by bit along the map; nothing until something is.
     covered: Vec<u64>,
 }
 
@@ -57,6 +62,7 @@ impl<'a> Coverage<'a> {
         lines: &Lines,
         parameters: &Parameters,
     ) -> Self {
+        let diagonal = (frame.width + frame.height) as f64;
         let family = |(direction, &angle): (usize, &f64)| {
             let angle = frame.angle_to_grid(angle);
             let mut members: Vec<Member> = (0..lines.len())
@@ -69,11 +75,17 @@ impl<'a> Coverage<'a> {
                 })
                 .collect();
             members.sort_by(|p, q| p.offset.total_cmp(&q.offset));
-            Family { angle, heading: [libm::cos(angle), libm::sin(angle)], members }
+            let heading = [libm::cos(angle), libm::sin(angle)];
+            let ends = [frame.width, frame.height].map(|side| [0.0, side as f64]);
+            let places = ends[0].into_iter().flat_map(|x| ends[1].map(|y| x * heading[0] + y * heading[1] + diagonal));
+            let (low, high) = places.fold((f64::INFINITY, 0.0f64), |(low, high), at| (low.min(at), high.max(at)));
+            // What a pixel on the border covers, and what rounding may add.
+            let words = (low - BEYOND).max(0.0) as usize / WORD..(high + BEYOND) as usize / WORD + 1;
+            Family { angle, heading, words, members }
         };
         Self {
             frame,
-            diagonal: (frame.width + frame.height) as f64,
+            diagonal,
             tolerance: parameters.radiograms_tolerance_deg.to_radians(),
             families: directions.angles.iter().enumerate().map(family).collect(),
         }
@@ -81,8 +93,8 @@ impl<'a> Coverage<'a> {
 
     /// With what some edge pixels cover.
     pub fn add(&mut self, gradients: &Gradients) {
-        let span = 2 * self.diagonal.ceil() as usize + 4;
-        for Family { angle, heading: [cos, sin], members } in &mut self.families {
+        for Family { angle, heading: [cos, sin], words, members } in &mut self.families {
+            let bins = words.start * WORD..words.end * WORD;
             let offsets: Vec<f64> = members.iter().map(|member| member.offset).collect();
             let lines = OnLine::new(&offsets, FARTHEST_PIXELS);
             gradients.iter().for_each(|(pixel, along, magnitude)| {
@@ -96,11 +108,12 @@ impl<'a> Coverage<'a> {
                     if (member.offset - offset).abs() <= member.reach {
                         let bits = &mut member.covered;
                         if bits.is_empty() {
-                            bits.resize(span.div_ceil(64), 0);
+                            bits.resize(words.len(), 0);
                         }
                         for bin in [place - COVER_PIXELS, place, place + COVER_PIXELS] {
-                            let bin = bin.max(0.0) as usize;
-                            bits[bin / 64] |= 1 << (bin % 64);
+                            // All pixels of the map lie within.
+                            let bin = (bin as usize).clamp(bins.start, bins.end - 1) - bins.start;
+                            bits[bin / WORD] |= 1 << (bin % WORD);
                         }
                     }
                 }
@@ -115,10 +128,11 @@ impl<'a> Coverage<'a> {
         let mut runs: Vec<[f64; 2]> = Vec::new();
         let mut offsets = vec![0; arrangement.edges.len() + 1];
         // The edges are numbered line after line.
-        let members = families.into_iter().flat_map(|f| f.members.into_iter().map(move |m| (f.heading, m)));
-        let mut members: Vec<_> = members.filter(|(_, member)| !member.covered.is_empty()).collect();
-        members.sort_by_key(|(_, member)| member.line);
-        for ([cos, sin], member) in members {
+        let members =
+            families.into_iter().flat_map(|f| f.members.into_iter().map(move |m| (f.heading, f.words.start * WORD, m)));
+        let mut members: Vec<_> = members.filter(|(.., member)| !member.covered.is_empty()).collect();
+        members.sort_by_key(|(.., member)| member.line);
+        for ([cos, sin], start, member) in members {
             let bits = member.covered;
             let sums = counts(&bits);
             for edge in arrangement.line_edges[member.line].clone() {
@@ -133,7 +147,7 @@ impl<'a> Coverage<'a> {
                     first = f64::midpoint(from, to) as usize;
                     last = first + 1;
                 }
-                let count = count_below(&bits, &sums, last) - count_below(&bits, &sums, first);
+                let count = count_below(&bits, &sums, last - start) - count_below(&bits, &sums, first - start);
                 shares[edge as usize] = tidy(f64::from(count) / (last - first) as f64);
                 let metres = |bin: usize| {
                     let place = if bin == first {
@@ -146,8 +160,8 @@ impl<'a> Coverage<'a> {
                     tidy((place - ends[0]).abs() * frame.resolution)
                 };
                 let before = runs.len();
-                runs.extend(bits::runs(&bits, first..last, true).map(|run| {
-                    let (a, b) = (metres(run.start), metres(run.end));
+                runs.extend(bits::runs(&bits, first - start..last - start, true).map(|run| {
+                    let (a, b) = (metres(start + run.start), metres(start + run.end));
                     [a.min(b), a.max(b)]
                 }));
                 if ends[0] > ends[1] {
@@ -178,7 +192,7 @@ fn counts(bits: &[u64]) -> Vec<u32> {
 
 /// Set bits before bit `n`.
 fn count_below(bits: &[u64], sums: &[u32], n: usize) -> u32 {
-    let word = (n / 64).min(bits.len() - 1);
-    let rest = if n / 64 >= bits.len() { u64::MAX } else { (1u64 << (n % 64)) - 1 };
+    let word = (n / WORD).min(bits.len() - 1);
+    let rest = if n / WORD >= bits.len() { u64::MAX } else { lowest(n % WORD) };
     sums[word] + (bits[word] & rest).count_ones()
 }

@@ -5,7 +5,7 @@ use crate::adjacency::Adjacency;
 use crate::arrangement::{Arrangement, arrange};
 use crate::bands::side_by_side;
 use crate::coverage::Coverage;
-use crate::gradients::{Gradients, find_gradients_in};
+use crate::gradients::Gradients;
 use crate::grid::{Frame, Grid};
 use crate::labels::{Division, Ground, Memory, Recall, Sight, Sketch, find_confidence, find_labels_in, find_patterns};
 use crate::occupancy::Occupancy;
@@ -18,8 +18,6 @@ use std::borrow::Cow;
 
 /// Maps of more pixels than this are surveyed so.
 const MANY: usize = 1 << 27;
-/// Rows of which the gradients are found anew at once.
-const ROWS: usize = 1024;
 
 /// True of maps of so many pixels that memory is spared.
 #[must_use]
@@ -40,19 +38,21 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
         Some(sums) if sums.fits(arrangement) => Cow::Borrowed(sums),
         _ => Cow::Owned(FaceSums::new(grid, arrangement, 0..frame.height, threads)),
     };
-    // What the labels ask of the faces: what they mostly are and their middles.
-    let (subdivision, occupancy) = {
+    // What the labels ask of the faces: what they mostly are and their middles. And the lines that have edges.
+    let (subdivision, occupancy, mut coverage) = {
         let arrangement = arranged(&structure);
+        let Structure { directions, lines, .. } = &structure;
+        let coverage = Coverage::new(frame, &arrangement, directions, lines, parameters);
         let occupancy = Occupancy::states_of(&summed(&arrangement));
         let centres = Subdivision::new(frame, arrangement, threads).centres;
-        (Subdivision { centres, ..Subdivision::default() }, occupancy)
+        (Subdivision { centres, ..Subdivision::default() }, occupancy, coverage)
     };
+    coverage.add(&structure.gradients);
     let sight = {
         let evidence = structure.evidence(grid, parameters, threads, &recall);
         side_by_side(1, |side| Sight::lined(&evidence, Ground::start(side, grid, threads, &recall)))
     };
-    // What is seen between the lines and the labels' racks need specks, and no other stage needs gradients but the
-    // coverage of edges, which takes them part by part.
+    // What is seen between the lines and the labels' racks need specks, and no other stage needs gradients.
     structure.gradients = structure.gradients.specks();
     let (labels, confidence) = {
         let evidence = structure.evidence(grid, parameters, threads, &recall);
@@ -75,11 +75,6 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
         Occupancy::of_faces(&sums)
     };
     let Structure { gradients, directions, radiograms, lines } = structure;
-    let mut coverage = Coverage::new(frame, &arrangement, &directions, &lines, parameters);
-    for first in (0..frame.height).step_by(ROWS) {
-        let rows = first..frame.height.min(first + ROWS);
-        coverage.add(&find_gradients_in(grid, rows, 0..frame.width, parameters, threads));
-    }
     let covered = coverage.of_edges(&arrangement);
     let occupancy = occupancy.with(covered);
     let edges = (0..).zip(&arrangement.line_edges).filter(|(_, edges)| !edges.is_empty());

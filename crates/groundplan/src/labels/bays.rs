@@ -43,7 +43,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Option<P
         }
         // Across, then along.
         let mut specks: Vec<[f64; 2]> = pitch::specks_of(evidence, view).map(|[u, v]| [v, u]).collect();
-        specks.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        specks.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
         let places: Vec<Vec<f64>> = own.iter().map(|&n| along(&rows[n], &specks)).collect();
         drop(specks);
         let Some(common) = common(&places, evidence) else { continue };

@@ -34,6 +34,8 @@ pub struct Family<'a> {
     pub view: &'a Turned,
     /// Between the lines of posts of the rows that cross, metres: a strip as wide may be a row of empty bays.
     pub pitches: Vec<f64>,
+    /// The most columns that a mouth of others has in a line.
+    longest: usize,
     /// True when racks stand in the place: somewhere bays recur.
     pub racked: bool,
     pub parameters: &'a Parameters,
@@ -81,6 +83,7 @@ impl<'a> Family<'a> {
         let bay = view.pitch.map_or(BAY, |pitch| BAY.max(MISSING * pitch));
         Self {
             pitches: pitches(views, view),
+            longest: mouths.iter().flatten().map(ExactSizeIterator::len).max().unwrap_or(0),
             racked,
             view,
             parameters: evidence.parameters,
@@ -150,7 +153,9 @@ impl<'a> Family<'a> {
                 let width = across[1] - across[0];
                 let led_to = |strip: &Strip| sides.iter().any(|&side| self.is_led_to(strip, side, &mouths[side]));
                 let may_be = |columns: &Range<usize>| {
-                    sides.iter().any(|&side| self.opening(&mouths[side], width, columns).count() >= LEAST_MOUTHS)
+                    sides
+                        .iter()
+                        .any(|&side| self.opening(&mouths[side], width, columns).nth(LEAST_MOUTHS - 1).is_some())
                 };
                 if !may_be(&(0..view.size[0])) {
                     continue;
@@ -173,9 +178,8 @@ impl<'a> Family<'a> {
 
     /// A key with all that mouths do to a side within some columns.
     fn key_in(&self, key: Key, side: usize, mouths: &[Range<usize>], columns: &Range<usize>) -> Key {
-        let within = mouths.iter().filter(|mouth| columns.start < mouth.end && mouth.start < columns.end);
         let key = key.bits(&self.sides[side].walls, columns.clone());
-        within.fold(key, |key, mouth| key.with(mouth.start as u64).with(mouth.end as u64))
+        self.within(mouths, columns).fold(key, |key, mouth| key.with(mouth.start as u64).with(mouth.end as u64))
     }
 
     /// The mouths within some columns that may open into a strip so wide: beside wide aisles, what is narrow is in a row.
@@ -185,15 +189,22 @@ impl<'a> Family<'a> {
         width: f64,
         columns: &Range<usize>,
     ) -> impl Iterator<Item = &'m Range<usize>> {
-        let (cell, columns) = (self.view.cell, columns.clone());
-        let within = move |mouth: &&Range<usize>| columns.start < mouth.end && mouth.start < columns.end;
-        mouths.iter().filter(within).filter(move |mouth| width >= LED_TO * (mouth.len() as f64 * cell))
+        let cell = self.view.cell;
+        self.within(mouths, columns).filter(move |mouth| width >= LED_TO * (mouth.len() as f64 * cell))
+    }
+
+    /// The mouths of a line that lie within some columns.
+    fn within<'m>(&self, mouths: &'m [Range<usize>], columns: &Range<usize>) -> impl Iterator<Item = &'m Range<usize>> {
+        let Range { start, end } = *columns;
+        // None is longer than the longest of all.
+        let from = mouths.partition_point(|mouth| mouth.start + self.longest <= start);
+        mouths[from..].iter().take_while(move |mouth| mouth.start < end).filter(move |mouth| start < mouth.end)
     }
 
     /// True when mouths of a side open into a strip side by side, with structure between them, and none is much wider.
     fn is_led_to(&self, strip: &Strip, side: usize, mouths: &[Range<usize>]) -> bool {
         let (from, to) = self.range(strip);
-        let open: Vec<_> = mouths.iter().filter(|mouth| from < mouth.end && mouth.start < to).collect();
+        let open: Vec<_> = self.within(mouths, &(from..to)).collect();
         let all_may = self.opening(mouths, strip.width(), &(from..to)).count() == open.len();
         let between: Vec<usize> = (from..to).filter(|c| !open.iter().any(|mouth| mouth.contains(c))).collect();
         let held = between.iter().filter(|&&c| self.sides[side].near.get(c)).count();

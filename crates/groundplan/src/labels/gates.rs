@@ -12,6 +12,7 @@ use super::through::{Seen, Through};
 use super::turned::Turned;
 use super::widths::Widths;
 use crate::bands::flat_map_each;
+use std::collections::BTreeMap;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
 const IN_LINE: (f64, f64) = (0.7, 0.5);
@@ -100,13 +101,16 @@ fn up_to_walls(views: &[Turned], strips: &[Strip], placed: &[Beside], widest: f6
 
 /// The strips without what of them leads through bays.
 pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
-    let mut crossed = crossed(evidence, look, views, &strips);
+    let known = crossed(evidence, look, views, &strips, &[], &[]);
+    let mut crossed = by_strip(&known, strips.len());
     let left: Vec<_> = strips.iter().zip(&crossed).map(|(strip, crossed)| left_between(strip, crossed)).collect();
-    if left.iter().any(Option::is_some) {
+    let is_narrower: Vec<bool> = left.iter().map(Option::is_some).collect();
+    if is_narrower.contains(&true) {
         for (strip, left) in strips.iter_mut().zip(left) {
             strip.across = left.unwrap_or(strip.across);
         }
-        crossed = self::crossed(evidence, look, views, &strips);
+        let known = self::crossed(evidence, look, views, &strips, &known, &is_narrower);
+        crossed = by_strip(&known, strips.len());
     }
     strips.into_iter().zip(crossed).flat_map(|(strip, crossed)| ways(strip, crossed)).collect()
 }
@@ -133,9 +137,34 @@ fn is_wide(ends: &[f64; 2]) -> bool {
     ends[1] - ends[0] >= WIDTH.0
 }
 
-/// The rows that each strip crosses.
-fn crossed(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]) -> Vec<Vec<Crossed>> {
-    let mut crossed: Vec<Vec<Crossed>> = vec![Vec::new(); strips.len()];
+/// A row between two of the strips, and which of them lead across it.
+struct Across {
+    row: Row,
+    strips: Vec<(usize, Crossed)>,
+}
+
+/// The rows that each strip crosses, in their order.
+fn by_strip(rows: &[Across], strips: usize) -> Vec<Vec<Crossed>> {
+    let mut crossed: Vec<Vec<Crossed>> = vec![Vec::new(); strips];
+    for (n, row) in rows.iter().flat_map(|row| &row.strips) {
+        crossed[*n].push(row.clone());
+    }
+    crossed
+}
+
+/// The rows that strips cross. Those that are known from before some strips became narrower are as they were where none of
+/// these has to do with them.
+fn crossed(
+    evidence: &Evidence,
+    look: &Look,
+    views: &[Turned],
+    strips: &[Strip],
+    known: &[Across],
+    is_narrower: &[bool],
+) -> Vec<Across> {
+    let mut crossed = Vec::new();
+    let place = |row: &Row| (row.between, row.along[0].to_bits());
+    let known: BTreeMap<_, &Across> = known.iter().map(|across| (place(&across.row), across)).collect();
     // Where a direction does not tell its own bays, they are as those of the others.
     let common = views.iter().find_map(|view| view.pitch);
     let placed = placed(views, strips.iter().map(Strip::place));
@@ -146,25 +175,35 @@ fn crossed(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip])
         let is_aisle = |n: &usize| {
             strips[*n].direction == view.direction && !strips[*n].bays && !racks::is_within_row(strips, &placed, *n)
         };
-        let aisles: Vec<Strip> = (0..strips.len()).filter(is_aisle).map(|n| strips[n].clone()).collect();
+        let numbers: Vec<usize> = (0..strips.len()).filter(is_aisle).collect();
+        let aisles: Vec<Strip> = numbers.iter().map(|&n| strips[n].clone()).collect();
         let extents: Vec<[f64; 2]> = aisles.iter().map(|strip| strip.along).collect();
-        let rows = racks::between(views, &aisles, &extents);
+        let mut rows = racks::between(views, &aisles, &extents);
+        for row in &mut rows {
+            row.between = row.between.map(|pair| pair.map(|n| numbers[n]));
+        }
         let crossing = |row: &Row| -> Vec<(usize, Crossed)> {
             let Some(between) = row.between else { return Vec::new() };
+            let near = leading_across([view, other], &placed, row, widest);
+            let is_as_before = |before: &&&Across| {
+                let of_before = before.strips.iter().map(|(n, _)| n);
+                before.row == *row && !near.iter().chain(of_before).chain(&between).any(|&n| is_narrower[n])
+            };
+            if let Some(before) = known.get(&place(row)).filter(is_as_before) {
+                return before.strips.clone();
+            }
             let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, view.pitch.or(common));
             let (ways, open) = (columns.ways(), columns.open());
-            let aisles = between.map(|n| &aisles[n]);
+            let aisles = between.map(|n| &strips[n]);
             // Then the rows might as well be what lies between two ways across the rows.
             let shorter = aisles.iter().map(|aisle| aisle.length()).fold(f64::INFINITY, f64::min);
             let times = if view.pitch.is_some() { LONGER } else { 1.0 };
-            let near = leading_across([view, other], &placed, row, widest).into_iter();
-            let judged = near.filter(|&n| strips[n].length() < times * shorter);
+            let judged = near.into_iter().filter(|&n| strips[n].length() < times * shorter);
             let cross = |n: usize| cross([view, other], row, (&columns, &ways, &open), &strips[n], aisles);
             judged.filter_map(|n| cross(n).map(|crossed| (n, crossed))).collect()
         };
-        for (n, row) in flat_map_each(rows.len(), evidence.threads, |n| crossing(&rows[n])) {
-            crossed[n].push(row);
-        }
+        let found = flat_map_each(rows.len(), evidence.threads, |n| [crossing(&rows[n])]);
+        crossed.extend(rows.into_iter().zip(found).map(|(row, strips)| Across { row, strips }));
     }
     crossed
 }

@@ -3,13 +3,15 @@
 
 use super::beside::Beside;
 use super::corridors::{self, Strip};
-use super::ends::{overlap, wider};
+use super::ends::{around, overlap, wider};
 use super::turned::Turned;
 
 /// A way opens into another when its end is so near to the other's side, metres.
 const MOUTH: f64 = 3.0;
 /// A way lies over a piece when it shares more than this of its own length and width.
 const OVER: f64 = 0.5;
+/// A little more than rounding may move a place, metres.
+const SLACK: f64 = 1e-3;
 /// It goes on beyond one over floor that is free but for this share.
 const CLUTTER: f64 = 0.1;
 
@@ -36,17 +38,20 @@ pub fn sided_by(views: &[Turned], way: Strip, pieces: &[Strip], placed: &[Beside
 }
 
 /// True when another ends at a way's side, or so near that it opens into it.
-pub fn is_opened_into(views: &[Turned], way: &Strip, strips: &[Strip]) -> bool {
+pub fn is_opened_into(views: &[Turned], way: &Strip, strips: &[Strip], placed: &[Beside]) -> bool {
     let own = &views[way.direction];
-    let opens = |strip: &Strip| {
-        let its = &views[strip.direction];
-        libm::sin(own.angle - its.angle).abs() > corridors::ASKEW
-            && strip.along.into_iter().any(|end| {
-                let [u, v] = own.place(its.to_map([end, strip.middle()]));
-                (way.along[0]..=way.along[1]).contains(&u) && (v - way.middle()).abs() <= way.width() / 2.0 + MOUTH
-            })
+    let opens = |its: &Turned, strip: &Strip| {
+        strip.along.into_iter().any(|end| {
+            let [u, v] = own.place(its.to_map([end, strip.middle()]));
+            (way.along[0]..=way.along[1]).contains(&u) && (v - way.middle()).abs() <= way.width() / 2.0 + MOUTH
+        })
     };
-    strips.iter().any(opens)
+    let reached = own.rectangle(way.along, wider(way.across, MOUTH));
+    views.iter().filter(|its| libm::sin(own.angle - its.angle).abs() > corridors::ASKEW).any(|its| {
+        let [along, across] = [0, 1].map(|axis| around(reached.iter().map(|&corner| its.place(corner)[axis])));
+        let near = placed[its.direction].touching(wider(along, SLACK), wider(across, SLACK));
+        near.into_iter().any(|n| opens(its, &strips[n]))
+    })
 }
 
 /// True when another of its direction ends in a way, as where both are one that bends: no farther from the way's end than

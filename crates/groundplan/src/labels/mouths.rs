@@ -13,7 +13,7 @@ const SQUARE: f64 = 0.5;
 /// Aisles side by side are of one width but for this share.
 const ALIKE: f64 = 0.1;
 
-/// For each line of a view the columns of such mouths.
+/// For each line of a view the columns of such mouths, by where they begin.
 pub fn of(views: &[Turned], view: &Turned, strips: &[Strip]) -> Vec<Vec<Range<usize>>> {
     let square = |strip: &&Strip| libm::sin(views[strip.direction].angle - view.angle).abs() >= SQUARE;
     let others: Vec<&Strip> = strips.iter().filter(square).filter(|strip| !strip.bays).collect();
@@ -35,7 +35,9 @@ pub fn of(views: &[Turned], view: &Turned, strips: &[Strip]) -> Vec<Vec<Range<us
     };
     let side_by_side = |reaching: Vec<(&Strip, Range<usize>)>| {
         let beside = |n: usize| (0..reaching.len()).any(|m| m != n && is_alike(reaching[n].0, reaching[m].0));
-        (0..reaching.len()).filter(|&n| beside(n)).map(|n| reaching[n].1.clone()).collect()
+        let mut mouths: Vec<_> = (0..reaching.len()).filter(|&n| beside(n)).map(|n| reaching[n].1.clone()).collect();
+        mouths.sort_unstable_by_key(|mouth| (mouth.start, mouth.end));
+        mouths
     };
     reaching.into_iter().map(side_by_side).collect()
 }

@@ -17,22 +17,21 @@ pub struct Near {
 
 impl Near {
     /// Points with their numbers; [`Near::within`] and [`Near::about`] ask for them.
-    pub fn points(points: &[(u32, [f64; 2])]) -> Self {
-        let mut made = Self::over(points.iter().map(|(_, point)| *point), points.len());
-        let entries: Vec<_> = points.iter().map(|&(number, point)| (made.bucket(point), number)).collect();
-        made.sort_in(&entries);
-        made
+    pub fn points(points: impl Iterator<Item = (u32, [f64; 2])> + Clone) -> Self {
+        let made = Self::over(points.clone().map(|(_, point)| point), points.clone().count());
+        let (starts, things) = made.sorted(points.map(|(number, point)| (made.bucket(point), number)));
+        Self { starts, things, ..made }
     }
 
     /// Convex polygons, numbered as they come; [`Near::at`] and [`Near::beside`] ask for them.
     pub fn polygons(polygons: &[Vec<[f64; 2]>]) -> Self {
-        let mut made = Self::over(polygons.iter().flatten().copied(), polygons.len());
+        let made = Self::over(polygons.iter().flatten().copied(), polygons.len());
         let mut entries = Vec::new();
         for (number, polygon) in polygons.iter().enumerate() {
             made.buckets(polygon, |bucket| entries.push((bucket, number as u32)));
         }
-        made.sort_in(&entries);
-        made
+        let (starts, things) = made.sorted(entries.iter().copied());
+        Self { starts, things, ..made }
     }
 
     /// The polygons that may hold a point, in the order of their numbers.
@@ -83,22 +82,23 @@ impl Near {
         Self { low, side, size, starts: Vec::new(), things: Vec::new() }
     }
 
-    /// Numbers by their buckets, in each in the order in which they come (a counting sort).
-    fn sort_in(&mut self, entries: &[(u32, u32)]) {
-        self.starts = vec![0; self.size[0] * self.size[1] + 1];
-        for &(bucket, _) in entries {
-            self.starts[bucket as usize + 1] += 1;
+    /// Numbers by their buckets, in each in the order in which they come (a counting sort), and where each bucket begins.
+    fn sorted(&self, entries: impl Iterator<Item = (u32, u32)> + Clone) -> (Vec<u32>, Vec<u32>) {
+        let mut starts = vec![0; self.size[0] * self.size[1] + 1];
+        for (bucket, _) in entries.clone() {
+            starts[bucket as usize + 1] += 1;
         }
-        for n in 1..self.starts.len() {
-            self.starts[n] += self.starts[n - 1];
+        for n in 1..starts.len() {
+            starts[n] += starts[n - 1];
         }
-        let mut next = self.starts.clone();
-        self.things = vec![0; entries.len()];
-        for &(bucket, number) in entries {
+        let mut next = starts.clone();
+        let mut things = vec![0; starts[starts.len() - 1] as usize];
+        for (bucket, number) in entries {
             let place = &mut next[bucket as usize];
-            self.things[*place as usize] = number;
+            things[*place as usize] = number;
             *place += 1;
         }
+        (starts, things)
     }
 
     fn of(&self, bucket: u32) -> &[u32] {

@@ -228,7 +228,7 @@ pub fn heaviest(views: &[Turned], mut weighed: Vec<(f64, Row)>) -> Vec<Row> {
     let mut rows: Vec<Row> = weighed.into_iter().map(|(_, row)| row).collect();
     let polygons: Vec<_> = rows.iter().map(|row| views[row.direction].rectangle(row.along, row.across)).collect();
     let middles: Vec<_> = (0..).zip(rows.iter().map(|row| row.middle(views))).collect();
-    let (holding, held) = (Near::polygons(&polygons), Near::points(&middles));
+    let (holding, held) = (Near::polygons(&polygons), Near::points(middles.iter().copied()));
     let mut kept = vec![false; rows.len()];
     for (n, row) in rows.iter().enumerate() {
         let own = middles[n].1;

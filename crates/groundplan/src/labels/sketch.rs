@@ -150,7 +150,7 @@ impl Plan {
         let known = placed(views, plan.strips.iter().map(Strip::place));
         let (led, cut): (Vec<_>, Vec<_>) = cut
             .into_iter()
-            .filter(|way| led::is_opened_into(views, way, &plan.strips))
+            .filter(|way| led::is_opened_into(views, way, &plan.strips, &known))
             .partition(|way| led::goes_on_as(way, &plan.strips, &known));
         plan = plan.with(views, &led, least, threads);
         if !cut.is_empty() && !plan.find_racks(views, on_legs, &standing, threads).is_empty() {

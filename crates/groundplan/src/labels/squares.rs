@@ -1,7 +1,8 @@
 //! The cells of a large view in squares, those that are all alike as one number: most of a large map is.
 
 use super::summed::Summed;
-use super::sums::{What, barred};
+use super::sums::What;
+use crate::bits::{Bits, bits_of, lowest};
 use std::cell::Cell;
 use std::ops::Range;
 use std::sync::Arc;
@@ -23,35 +24,49 @@ pub struct Band {
 }
 
 /// Rows of cells, a byte for each column with its blocked samples in the low half and its occupied ones in the high
-/// half; and a byte for each row with a bit for each column that is barred.
+/// half; and for each row a bit that says whether something stands in the cell before it, and one for the cell after it.
 #[derive(Debug)]
 struct Square {
-    cells: [u64; SIDE],
-    barred: [u8; SIDE],
-    /// Blocked samples of all rows, which is asked most, a byte for each column.
-    whole: u64,
+    // Bytes, and not numbers, take no more room than they need.
+    cells: [[u8; SIDE]; SIDE],
+    beside: [u8; 2],
 }
 
 impl Square {
-    fn new(cells: [u64; SIDE], barred: [u8; SIDE]) -> Self {
-        Self { cells, barred, whole: cells.iter().map(|row| row & LOW).sum() }
+    fn row(&self, n: usize) -> u64 {
+        u64::from_le_bytes(self.cells[n])
     }
 
-    /// What its rows hold, a byte for each column.
+    /// What a row holds, a byte for each column.
+    #[inline]
+    fn of_row(&self, what: What, n: usize) -> u64 {
+        match what {
+            What::Blocked => self.row(n) & LOW,
+            What::Occupied => self.row(n) >> 4 & LOW,
+            What::Barred => {
+                // One where there is more than nothing.
+                let stands = ((self.row(n) >> 4 & LOW) + 0x7f * ONES) >> 7 & ONES;
+                let [before, after] = self.beside.map(|bits| u64::from(bits >> n & 1));
+                stands | stands << 8 | stands >> 8 | before | after << 56
+            }
+        }
+    }
+
+    /// What its rows hold.
     fn rows(&self, what: What) -> [u64; SIDE] {
         match what {
-            What::Blocked => self.cells.map(|row| row & LOW),
-            What::Occupied => self.cells.map(|row| row >> 4 & LOW),
-            What::Barred => self.barred.map(spread),
+            What::Blocked => std::array::from_fn(|n| self.of_row(What::Blocked, n)),
+            What::Occupied => std::array::from_fn(|n| self.of_row(What::Occupied, n)),
+            What::Barred => std::array::from_fn(|n| self.of_row(What::Barred, n)),
         }
     }
 
     /// The sums of some rows, a byte for each column.
     fn add_up(&self, what: What, rows: Range<usize>) -> u64 {
         match what {
-            What::Blocked => self.cells[rows].iter().map(|row| row & LOW).sum(),
-            What::Occupied => self.cells[rows].iter().map(|row| row >> 4 & LOW).sum(),
-            What::Barred => self.barred[rows].iter().map(|row| spread(*row)).sum(),
+            What::Blocked => rows.map(|n| self.of_row(What::Blocked, n)).sum(),
+            What::Occupied => rows.map(|n| self.of_row(What::Occupied, n)).sum(),
+            What::Barred => rows.map(|n| self.of_row(What::Barred, n)).sum(),
         }
     }
 }
@@ -61,7 +76,8 @@ pub struct SquaredRows<'a> {
     layers: Vec<Layer<'a>>,
     what: What,
     /// The columns that were asked last, eight at once, and their sums: mostly the next to be asked is beside.
-    last: Cell<(usize, [u32; SIDE])>,
+    last: Cell<usize>,
+    sums: [Cell<u32>; SIDE],
 }
 
 impl<'a> SquaredRows<'a> {
@@ -74,15 +90,16 @@ impl<'a> SquaredRows<'a> {
             Layer { places: &band.places[n % BAND * across..][..across], squares: &band.squares, rows }
         };
         let layers = (from / SIDE..to.div_ceil(SIDE)).map(layer).collect();
-        Self { layers, what, last: Cell::new((usize::MAX, [0; SIDE])) }
+        Self { layers, what, last: Cell::new(usize::MAX), sums: Default::default() }
     }
 
     pub fn at(&self, column: usize) -> u32 {
         let n = column / SIDE;
-        if self.last.get().0 != n {
-            self.last.set((n, of_square(&self.layers, n, self.what)));
+        if self.last.get() != n {
+            self.last.set(n);
+            self.sums.iter().zip(of_square(&self.layers, n, self.what)).for_each(|(own, sum)| own.set(sum));
         }
-        self.last.get().1[column % SIDE]
+        self.sums[column % SIDE].get()
     }
 
     /// The first of some columns whose sum is as large as that.
@@ -99,6 +116,26 @@ impl<'a> SquaredRows<'a> {
             let sums = of_square(&self.layers, n, self.what);
             own.clone().rfind(|&place| sums[place] >= least).map(|place| n * SIDE + place)
         })
+    }
+
+    /// Which of some columns have a sum as large as that.
+    pub fn reached(&self, columns: &Range<usize>, least: u32) -> Bits {
+        let mut reached = Bits::new(columns.len());
+        for (n, own) in squares(columns) {
+            let sums = if self.layers.len() <= FEW {
+                // Mostly a row or a few are asked, and nothing stands in them.
+                let bytes = of_few(&self.layers, n, self.what);
+                if bytes == 0 && least > 0 {
+                    continue;
+                }
+                bytes.to_le_bytes().map(u32::from)
+            } else {
+                of_square(&self.layers, n, self.what)
+            };
+            let bits = bits_of(sums.map(|sum| u8::from(sum >= least))) >> own.start;
+            reached.add(n * SIDE + own.start - columns.start, bits & lowest(own.len()));
+        }
+        reached
     }
 
     /// The sums over them of some columns.
@@ -127,19 +164,27 @@ pub fn sums(bands: &[Arc<Band>], width: usize, what: &[What], rows: Range<usize>
             let own = rows.start.saturating_sub(n * SIDE)..(rows.end - n * SIDE).min(SIDE);
             let (before, after) = sums.split_at_mut((n * SIDE + own.start - rows.start + 1) * width);
             let last = before[before.len() - width..].chunks_exact(SIDE);
-            let mut after: Vec<_> =
-                after.chunks_mut(width).take(own.len()).map(|row| row.chunks_exact_mut(SIDE)).collect();
-            for (&place, last) in band.places[n % BAND * across..][..across].iter().zip(last) {
+            let mut after: Vec<_> = after.chunks_mut(width).take(own.len()).collect();
+            let places = &band.places[n % BAND * across..][..across];
+            for (&place, (last, from)) in places.iter().zip(last.zip((0..).step_by(SIDE))) {
+                let mut sum = [0u16; SIDE];
+                sum.copy_from_slice(last);
                 let rows = if place & ALIKE != 0 {
-                    [u64::from(of_cell(place as u8, what)) * ONES; SIDE]
+                    // Most of a map is free, and nothing stands in it.
+                    let each = of_cell(place as u8, what);
+                    if each == 0 {
+                        for to in &mut after {
+                            to[from..from + SIDE].copy_from_slice(&sum);
+                        }
+                        continue;
+                    }
+                    [u64::from(each) * ONES; SIDE]
                 } else {
                     band.squares[place as usize].rows(what)
                 };
-                let mut sum = [0u16; SIDE];
-                sum.copy_from_slice(last);
                 for (row, to) in rows[own.clone()].iter().zip(&mut after) {
                     sum.iter_mut().zip(row.to_le_bytes()).for_each(|(sum, byte)| *sum += u16::from(byte));
-                    to.next().into_iter().for_each(|to| to.copy_from_slice(&sum));
+                    to[from..from + SIDE].copy_from_slice(&sum);
                 }
             }
         }
@@ -156,9 +201,14 @@ struct Layer<'a> {
 /// Of so many squares above each other the sums still fit in a byte.
 const FEW: usize = 3;
 
+/// What a few rows of squares hold in the n-th square of each, a byte for each of its columns.
+fn of_few(few: &[Layer], n: usize, what: What) -> u64 {
+    few.iter().map(|layer| layer.add_up(n, what)).sum()
+}
+
 /// Adds to `sums`, a number for each of its columns, what a few rows of squares hold in the n-th square of each.
 fn add_up(few: &[Layer], n: usize, what: What, sums: &mut [u32; SIDE]) {
-    let bytes: u64 = few.iter().map(|layer| layer.add_up(n, what)).sum();
+    let bytes = of_few(few, n, what);
     if bytes != 0 {
         sums.iter_mut().zip(bytes.to_le_bytes()).for_each(|(sum, byte)| *sum += u32::from(byte));
     }
@@ -188,12 +238,7 @@ impl Layer<'_> {
         if place & ALIKE != 0 {
             return u64::from(of_cell(place as u8, what)) * (to - from) as u64 * ONES;
         }
-        let square = &self.squares[place as usize];
-        if matches!(what, What::Blocked) && 2 * (to - from) > SIDE {
-            // Mostly all rows are asked, and of others what is not asked is less.
-            return square.whole - square.add_up(what, 0..from) - square.add_up(what, to..SIDE);
-        }
-        square.add_up(what, from..to)
+        self.squares[place as usize].add_up(what, from..to)
     }
 }
 
@@ -202,27 +247,22 @@ impl Band {
     pub fn new(width: usize, cells: &[u8]) -> Self {
         let across = width.div_ceil(SIDE);
         let mut made = Self { places: Vec::with_capacity(across * BAND), squares: Vec::new() };
-        let mut bars = vec![0; cells.len()];
-        bars.chunks_mut(width).zip(cells.chunks(width)).for_each(|(bars, row)| barred(row, bars));
-        for (cells, barred) in cells.chunks(SIDE * width).zip(bars.chunks(SIDE * width)) {
+        for cells in cells.chunks(SIDE * width) {
+            // What lies beyond the borders is like what lies on them.
+            let last = cells.len() / width - 1;
+            let rows: [&[u8]; SIDE] = std::array::from_fn(|row| &cells[row.min(last) * width..][..width]);
             for from in (0..width).step_by(SIDE) {
-                // What lies beyond the borders is like what lies on them.
-                let byte = |list: &[u8], row: usize, n: usize| {
-                    list[row.min(list.len() / width - 1) * width + (from + n).min(width - 1)]
+                let own = rows.map(|row| eight(row, from));
+                let stands = |column: usize| {
+                    let stands = |row: &[u8]| row.get(column).is_some_and(|cell| cell >> 4 != 0);
+                    (0..).zip(rows).map(|(n, row)| u8::from(stands(row)) << n).sum()
                 };
-                let (mut own, mut bars) = ([0u64; SIDE], [0u8; SIDE]);
-                for row in 0..SIDE {
-                    for n in 0..SIDE {
-                        own[row] |= u64::from(byte(cells, row, n)) << (8 * n);
-                        bars[row] |= byte(barred, row, n) << n;
-                    }
-                }
-                let first = own[0] as u8;
-                let is_barred = if of_cell(first, What::Barred) == 1 { 255 } else { 0 };
-                let alike = own == [u64::from(first) * ONES; SIDE] && bars == [is_barred; SIDE];
+                let beside = [from.checked_sub(1).map_or(0, stands), stands(from + SIDE)];
+                let first = own[0][0];
+                let alike = own == [[first; SIDE]; SIDE] && (of_cell(first, What::Barred) == 1 || beside == [0; 2]);
                 made.places.push(if alike { ALIKE | u32::from(first) } else { made.squares.len() as u32 });
                 if !alike {
-                    made.squares.push(Square::new(own, bars));
+                    made.squares.push(Square { cells: own, beside });
                 }
             }
         }
@@ -239,8 +279,10 @@ fn of_cell(cell: u8, what: What) -> u8 {
     }
 }
 
-/// A byte for each bit.
-fn spread(bits: u8) -> u64 {
-    let apart = (u64::from(bits) * ONES) & 0x8040_2010_0804_0201;
-    (apart + 0x7f * ONES) >> 7 & ONES
+/// Eight bytes of a row from a column on, of which there is one; beyond its end all are like the last.
+fn eight(row: &[u8], from: usize) -> [u8; SIDE] {
+    let own = &row[from..row.len().min(from + SIDE)];
+    let mut bytes = [own[own.len() - 1]; SIDE];
+    bytes[..own.len()].copy_from_slice(own);
+    bytes
 }

@@ -225,9 +225,9 @@ impl<'a> Faces<'a> {
     fn new(division: &Division<'a>, of: impl Fn(State) -> bool) -> Self {
         let centres = &division.subdivision.centres;
         let left: Vec<bool> = division.occupancy.states.iter().map(|state| of(*state)).collect();
-        let points: Vec<_> =
-            (0u32..).zip(centres).filter(|(face, _)| left[*face as usize]).map(|(face, at)| (face, *at)).collect();
-        Self { centres, near: Near::points(&points), left }
+        let points = (0u32..).zip(centres).filter(|(face, _)| left[*face as usize]).map(|(face, at)| (face, *at));
+        let near = Near::points(points);
+        Self { centres, near, left }
     }
 
     /// Takes the faces whose centres lie in a convex polygon.

@@ -179,7 +179,7 @@ impl Rows<'_> {
     pub fn reached(&self, columns: Range<usize>, least: u32) -> Bits {
         match self {
             Self::Summed(rows) => rows.reached(&columns, least),
-            Self::Squared(rows) => Bits::of(&rows.over(&columns), |sum| *sum >= least),
+            Self::Squared(rows) => rows.reached(&columns, least),
         }
     }
 
@@ -230,7 +230,12 @@ mod tests {
                 for what in asked {
                     let rows = near.rows(what, from, to);
                     assert!(matches!(rows, Rows::Summed(_)));
-                    assert_eq!(rows.over(0..width), squared.rows(what, from, to).over(0..width));
+                    let others = squared.rows(what, from, to);
+                    assert_eq!(rows.over(0..width), others.over(0..width));
+                    for (columns, least) in [(0..width, 1), (3..width - 2, 2), (9..9, 0), (11..14, 0), (0..17, 900)] {
+                        let [own, other] = [&rows, &others].map(|rows| rows.reached(columns.clone(), least));
+                        assert!((0..columns.len()).all(|n| own.get(n) == other.get(n)));
+                    }
                 }
             }
             // What was not laid out is asked of the squares.

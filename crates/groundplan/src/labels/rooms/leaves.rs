@@ -21,8 +21,7 @@ const SEEN: f64 = 0.7;
 pub fn beyond(openings: &[Bar], raster: &Raster) -> Vec<bool> {
     let (widest, wall) = (raster.pixels(WIDEST), raster.pixels(WALL));
     let doorways: Vec<&Bar> = openings.iter().filter(|opening| opening.length() <= widest).collect();
-    let jambs: Vec<_> = (0..).zip(&doorways).flat_map(|(n, door)| door.ends.map(|end| (n, end))).collect();
-    let near = Near::points(&jambs);
+    let near = Near::points((0..).zip(&doorways).flat_map(|(n, door)| door.ends.map(|end| (n, end))));
     let is_beyond = |opening: &Bar, [tip, across]: [[f64; 2]; 2]| {
         near.about(tip, widest + wall).into_iter().map(|n| doorways[n as usize]).any(|door| {
             opening.length() >= WIDER * door.length()

@@ -70,8 +70,7 @@ impl Space {
         let mut bars = gaps::along_lines(evidence, &self.raster);
         bars.retain(|bar| !bar.is_at_solid(&self.raster));
         let together = self.raster.pixels(TOGETHER);
-        let ends: Vec<_> = (0..).zip(&bars).flat_map(|(n, gap)| gap.ends.map(|end| (n, end))).collect();
-        let near = Near::points(&ends);
+        let near = Near::points((0..).zip(&bars).flat_map(|(n, gap)| gap.ends.map(|end| (n, end))));
         let fresh = |narrow: &&Bar| {
             let about = near.about(narrow.ends[0], together);
             !about.into_iter().any(|gap| bars[gap as usize].is_near(narrow, together))
