@@ -121,6 +121,18 @@ def test_each_wing_has_the_direction_of_its_ends_be_that_little_beside_its_long_
     assert (apart(expected, found).min(axis=1) < np.radians(0.15)).all(), np.degrees(found)
 
 
+@pytest.mark.parametrize("turn", [20, 33, 45])
+def test_a_wing_that_is_small_beside_the_hall_has_its_two_directions(turn: float) -> None:
+    def site(side: float) -> zoo.Picture:
+        return Canvas(900, 900).room(40, 40, 860, 330).turn(turn).room(400, 500, 400 + side, 500 + side).picture
+
+    found = np.radians(angles_of(site(90)))
+    assert len(found) == 4
+    assert (apart(np.radians([0, 90, turn, turn - 90]), found).min(axis=1) < np.radians(0.15)).all(), np.degrees(found)
+    # A box on the floor is no wing.
+    assert len(angles_of(site(12))) == 2
+
+
 @pytest.mark.parametrize(("skew", "seed"), [(10.0, 106), (-14.0, 14)])
 def test_a_skewed_hall_has_no_third_direction_by_goods_that_are_square_to_its_racks(skew: float, seed: int) -> None:
     made = simulate.warehouse(skew=skew, seed=seed, width=44.0, depth=32.0, yaw=6.2)

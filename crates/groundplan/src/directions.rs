@@ -41,6 +41,9 @@ const OTHERS_AMONG_CONTROLS: usize = 4;
 const SECOND: f64 = 0.04;
 /// And one that is square to the first, to so many degrees, this share.
 const SQUARE: (f64, f64) = (0.3, 0.015);
+/// Two weak ones that are square to one another, to so many degrees, are a wing's when each has this share: what is no
+/// wall lines up along one angle, if at all.
+const WING: (f64, f64) = (1.0, 0.03);
 /// Beside a direction there may be another that has more, unless as much lined up along the one that was found as this
 /// share of what lies along the new one. What the weaker one took stays with it: hardly anything lined up there.
 const LINED_UP: f64 = 0.5;
@@ -81,7 +84,9 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
             let (strong, weak): (Vec<_>, Vec<_>) =
                 found.into_iter().partition(|f| f.metres >= parameters.directions_min_weight * strongest);
             found = strong.into_iter().filter(|f| f.exceeds_chance(OTHERS_AMONG_CONTROLS)).collect();
+            let wings = wings(&weak, &found, strongest, parameters);
             found.extend(seconds(&weak, &found));
+            found.extend(wings);
         }
     }
     let sum: f64 = found.iter().map(|f| f.metres).sum();
@@ -138,6 +143,21 @@ fn seconds(weak: &[Candidate], strong: &[Candidate]) -> Vec<Candidate> {
     if is_skewed { Vec::new() } else { found }
 }
 
+/// Those of a wing that is small beside the whole: none of them is known by a strong one, but they are by one another. What
+/// is so near to a strong one that its pixels speak for that one too is a part of its hall that the map has turned.
+fn wings(weak: &[Candidate], strong: &[Candidate], strongest: f64, parameters: &Parameters) -> Vec<Candidate> {
+    let tolerance = parameters.radiograms_tolerance_deg.to_radians();
+    let is_beside = |f: &Candidate, to: &Candidate| {
+        let by = angle_between(f.angle, to.angle);
+        by.min(FRAC_PI_2 - by) <= tolerance
+    };
+    let may_be = |f: &&Candidate| {
+        f.metres >= WING.1 * strongest && f.exceeds_chance_beside(strong) && !strong.iter().any(|to| is_beside(f, to))
+    };
+    let own: Vec<Candidate> = weak.iter().filter(may_be).copied().collect();
+    own.iter().filter(|f| own.iter().any(|other| is_square(other.angle, f, WING.0))).copied().collect()
+}
+
 /// Those that have no other square to them.
 fn alone(strong: &[Candidate]) -> impl Iterator<Item = &Candidate> {
     strong.iter().filter(|f| !strong.iter().any(|other| is_square(other.angle, f, SQUARE.0)))
@@ -181,7 +201,11 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
             break;
         };
         tried.push(start);
-        let [useful, perhaps] = [&found[..], &[]].map(|found| least(found, strongest, start, parameters));
+        // What may be a wing's has another square to it.
+        let is_other = |f: &Candidate| is_square(start, f, ALIGNED_DEG) && f.metres >= WING.1 * strongest;
+        let has_other =
+            found.iter().any(is_other) || most(frame, rest, start + FRAC_PI_2, ALIGNED_DEG) >= WING.1 * strongest;
+        let [useful, perhaps] = [&found[..], &[]].map(|found| least(found, strongest, start, has_other, parameters));
         let most = most(frame, rest, start, ALIGNED_DEG + SCAN_DEG);
         if most < useful {
             continue;
@@ -216,8 +240,8 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
     found
 }
 
-/// Beside those that were found, what is less than so many metres about an angle is of no use.
-fn least(found: &[Candidate], strongest: f64, angle: f64, parameters: &Parameters) -> f64 {
+/// Beside those that were found, what is less than so many metres about an angle is of no use; square to it may be another.
+fn least(found: &[Candidate], strongest: f64, angle: f64, has_other: bool, parameters: &Parameters) -> f64 {
     let weight = parameters.directions_min_weight;
     if parameters.directions_count.is_some() {
         return 0.0;
@@ -227,9 +251,10 @@ fn least(found: &[Candidate], strongest: f64, angle: f64, parameters: &Parameter
     if strong.len() < 2 {
         return weight.min(SQUARE.1) * strongest;
     }
-    // Of the weak ones only what is square to one that has no other is taken.
+    // Of the weak ones only what is square to one that has no other is taken, and a wing's.
     let near = |f: &&Candidate| is_square(angle, f, ALIGNED_DEG);
-    alone(&strong).filter(near).map(|f| SQUARE.1 * f.metres).fold(weight * strongest, f64::min)
+    let share = if has_other { weight.min(WING.1) } else { weight };
+    alone(&strong).filter(near).map(|f| SQUARE.1 * f.metres).fold(share * strongest, f64::min)
 }
 
 /// No less than lines up along an angle, by how many pixels lie along it.

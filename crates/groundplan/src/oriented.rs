@@ -5,7 +5,7 @@
 
 use crate::bits::Bits;
 use crate::gradients::Gradients;
-use crate::grid::angle_between;
+use crate::grid::{angle_between, undirected};
 use crate::projection::Points;
 use crate::radiograms::has_direction;
 use std::f64::consts::PI;
@@ -67,7 +67,7 @@ fn bins_of(angles: &[f32], bins: &mut [u16; TOGETHER]) {
 /// The bins that hold all within `tolerance` of `angle`, on the grid, and whether they hold nothing else.
 fn bins(angle: f64, tolerance: f64) -> impl Iterator<Item = (usize, bool)> {
     let reach = (tolerance / PI * BINS as f64).ceil() as usize + 1;
-    let middle = bin(angle as f32);
+    let middle = bin(undirected(angle) as f32);
     let all = 2 * reach + 1 >= BINS;
     let bins = if all { 0..BINS } else { middle + BINS - reach..middle + BINS + reach + 1 };
     let (first, last) = (bins.start + 3, bins.end - 3);
@@ -256,7 +256,7 @@ mod tests {
             all.magnitudes.push((n * 31 % 256) as u8);
         }
         let (mut few, mut many) = (Oriented::of(&all, false), Oriented::of(&all, true));
-        for (angle, tolerance) in [(0.3, 0.08), (-1.56, 0.1), (0.3, 0.1), (1.0, 2.0)] {
+        for (angle, tolerance) in [(0.3, 0.08), (-1.56, 0.1), (1.75, 0.1), (0.3, 0.1), (1.0, 2.0)] {
             let [one, other] = [&few, &many].map(|of| of.along(angle, tolerance));
             assert_eq!(one.len(), other.len());
             assert!(one.len() > 100);

@@ -179,7 +179,7 @@ parameters! {
     directions_separation_deg: f64 = 8.0, "directions.separation_deg", "deg", Range::Number(0.5, 45.0), false, "II-A",
         "Two directions closer than this are one.";
     directions_min_weight: f64 = 0.15, "directions.min_weight", "", Range::Number(0.0, 1.0), false, "II-A",
-        "A direction counts when the structure that lines up along it is at least this share of the strongest's; a weaker one only where another has none square to it.";
+        "A direction counts when the structure that lines up along it is at least this share of the strongest's; a weaker one only where another has none square to it, or two are a small wing's.";
     radiograms_tolerance_deg: f64 = 15.0, "radiograms.tolerance_deg", "deg", Range::Number(1.0, 90.0), false, "II-B",
         "An edge pixel is projected along a direction when it lies within this angle of it.";
     lines_min_width: Option<f64> = None, "lines.min_width", "m", Range::Number(0.0, 10.0), true, "II-B",

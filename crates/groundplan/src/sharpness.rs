@@ -3,8 +3,8 @@
 use crate::projection::{Points, Sum};
 use std::borrow::Cow;
 
-/// How sharp the projection of some pixels is: the sum of the squares of its smoothed bins. It is greatest where walls
-/// fall on single bins. The bins are finer than a pixel and smoothed over more than one, so that it does not matter
+/// How sharp the projection of some pixels is: the sum of the squares of its smoothed bins, or of a lower power. It is
+/// greatest where walls fall on single bins. The bins are finer than a pixel and smoothed over more than one, so that it does not matter
 /// where between the bins a wall falls: else an angle slightly off, at which the walls happen to fall upon bins, would
 /// look sharper than the right one.
 struct Sharpness<'a> {
@@ -19,6 +19,9 @@ struct Sharpness<'a> {
 const WIDEST: usize = 8;
 /// Bins are smoothed so many at a time.
 const CHUNK: usize = 128;
+/// Powers are added up in so many sums, which do not wait for one another.
+const LANES: usize = 8;
+type Bins = [u32; CHUNK];
 
 impl<'a> Sharpness<'a> {
     fn new(points: &'a Points, threads: usize) -> Self {
@@ -27,37 +30,58 @@ impl<'a> Sharpness<'a> {
 
     /// Of few bins and smoothed little: a few short lines show among much else.
     fn roughly_at(&mut self, angle: f64) -> f64 {
-        self.over::<2, 2>(angle)
+        self.over::<2, 2>(angle, squares)
     }
 
     /// Of many bins and smoothed more: so the angle is the more exact.
     fn at(&mut self, angle: f64) -> f64 {
-        self.over::<4, 8>(angle)
+        self.over::<4, 8>(angle, squares)
     }
 
-    /// With so many bins to the pixel, on which pixels in a row fall, and smoothed twice over some.
-    fn over<const PER_PIXEL: usize, const WIDTH: usize>(&mut self, angle: f64) -> f64 {
+    /// Of many bins, smoothed over a pixel, so that walls of two halls that are a little apart are not one where the angle
+    /// is slightly off; and of a power at which each wall has its say, not the longest alone.
+    fn finely_at(&mut self, angle: f64) -> f64 {
+        self.over::<4, 4>(angle, powers)
+    }
+
+    /// With so many bins to the pixel, on which pixels in a row fall, and smoothed twice over some; the sum of something of
+    /// the bins.
+    fn over<const PER_PIXEL: usize, const WIDTH: usize>(&mut self, angle: f64, of: impl Fn(&Bins) -> f64) -> f64 {
         // So much is free at both ends that smoothing finds zeros there, and whole chunks beyond.
         let across = self.points.across(angle, PER_PIXEL, 2 * WIDTH);
         if self.narrow {
             self.points.sums(&across, &mut self.small, self.threads);
-            squares::<u32, WIDTH>(&mut self.small)
+            summed::<u32, WIDTH>(&mut self.small, of)
         } else {
             self.points.sums(&across, &mut self.large, self.threads);
-            squares::<u64, WIDTH>(&mut self.large)
+            summed::<u64, WIDTH>(&mut self.large, of)
         }
     }
 }
 
-/// The sum of the squares of the bins, given what lies between them, smoothed twice over so many.
-fn squares<T: Sum, const WIDTH: usize>(sums: &mut Vec<T>) -> f64 {
+/// The sum of something of the bins, given what lies between them, smoothed twice over so many.
+fn summed<T: Sum, const WIDTH: usize>(sums: &mut Vec<T>, of: impl Fn(&Bins) -> f64) -> f64 {
     sums.resize(sums.len().next_multiple_of(CHUNK) + 2 * WIDTH, T::default());
     let chunks = sums.windows(CHUNK + 2 * WIDTH - 1).step_by(CHUNK);
-    chunks.map(|sums| smoothed::<T, WIDTH>(sums).iter().map(|&v| u64::from(v).pow(2)).sum::<u64>() as f64).sum()
+    chunks.map(|sums| of(&smoothed::<T, WIDTH>(sums))).sum()
+}
+
+fn squares(bins: &Bins) -> f64 {
+    bins.iter().map(|&v| u64::from(v).pow(2)).sum::<u64>() as f64
+}
+
+/// The sum of the powers of 3/2.
+fn powers(bins: &Bins) -> f64 {
+    let mut sums = [0.0; LANES];
+    for part in bins.chunks_exact(LANES) {
+        let powers: [f32; LANES] = std::array::from_fn(|n| part[n] as f32 * (part[n] as f32).sqrt());
+        sums.iter_mut().zip(powers).for_each(|(sum, power)| *sum += f64::from(power));
+    }
+    sums.iter().sum()
 }
 
 /// A chunk of bins, given what lies between them, smoothed twice over so many.
-fn smoothed<T: Sum, const WIDTH: usize>(sums: &[T]) -> [u32; CHUNK] {
+fn smoothed<T: Sum, const WIDTH: usize>(sums: &[T]) -> Bins {
     let mut bins = [0u32; CHUNK + 2 * WIDEST];
     for (to, pair) in bins.iter_mut().zip(sums.windows(2)) {
         *to = T::on_bin(pair[0], pair[1]);
@@ -109,10 +133,10 @@ pub(crate) fn sharpest(
     step /= 2.0;
     let mut top = best.climb(step, |angle| some.at(angle));
     let mut all = Sharpness::new(pixels, threads);
-    best = Best { angle: top, value: all.at(top) };
+    best = Best { angle: top, value: all.finely_at(top) };
     while step > FINEST_PIXELS / diagonal {
         step /= 4.0;
-        top = best.climb(step, |angle| all.at(angle));
+        top = best.climb(step, |angle| all.finely_at(angle));
     }
     Some(top)
 }
