@@ -83,3 +83,15 @@ def test_a_thin_wall_that_comes_later_gives_the_survey_of_the_whole_map() -> Non
     column = round((2.0 + SIZE[0] / 2) / 0.02) - 10
     updated = groundplan.survey(before, resolution=0.02).update(after[:, column : column + 20], 0, column)
     assert updated.to_json() == groundplan.survey(after, resolution=0.02).to_json()
+
+
+@pytest.mark.parametrize("resolution", [0.01, 0.02, 0.025, 0.05])
+def test_a_wall_one_pixel_thick_at_a_corridor_s_end_makes_it_a_dead_end(resolution: float) -> None:
+    columns, rows = round(40 / resolution), round(30 / resolution)
+    x, y = np.meshgrid(*((np.arange(count) + 0.5) * resolution for count in (columns, rows)))
+    picture = np.full((rows, columns), 205, np.uint8)
+    for more, value in ((resolution, 0), (0.0, 254)):
+        for left, low, right, high in ((2.0, 14.0, 38.0, 16.5), (19.0, 2.0, 21.5, 28.0)):
+            picture[(x > left - more) & (x < right + more) & (y > low - more) & (y < high + more)] = value
+    survey = groundplan.survey(picture, resolution=resolution)
+    assert sorted(label["type"] for label in survey.of_kind("junction")) == ["X", "end", "end", "end", "end"]

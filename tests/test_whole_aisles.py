@@ -136,6 +136,24 @@ def test_an_aisle_goes_on_where_its_sides_are_no_lines_any_more(shared: Path) ->
     survey = groundplan.survey(groundplan.read(shared / "maps" / "torwic_slam_warehouse.yaml"))
     main = max(survey.of_kind("corridor"), key=lambda label: float(np.hypot(*np.subtract(*label["axis"]))))
     assert max(y for _, y in main["axis"]) > 78.0
-    assert main["width"] == pytest.approx(3.6, abs=0.2)
+    assert main["width"] == pytest.approx(3.7, abs=0.2)
     corners = [label["at"] for label in survey.of_kind("junction") if label["type"] == "L"]
     assert min(np.hypot(*np.subtract(at, (39.1, 43.3))) for at in corners) < 1.0
+
+
+@pytest.mark.parametrize("by", [2.0, 2.5])
+def test_a_way_that_goes_on_beside_itself_is_a_dead_end_at_its_own_ends_alone(by: float) -> None:
+    y, x = np.mgrid[-2.0:10.0:RESOLUTION, -2.0:62.0:RESOLUTION]
+
+    def floor(more: float, parted: bool) -> npt.NDArray[np.bool_]:
+        one = (x > -more) & (x < 30 + more) & (y > -more) & (y < 3 + more)
+        start = 30.3 if parted else 28.0
+        two = (x > start - more) & (x < 58 + more) & (y > by - more) & (y < by + 3 + more)
+        return np.asarray(one | two, np.bool_)
+
+    for parted, ends in ((False, [0, 58]), (True, [0, 30, 30, 58])):
+        picture = np.where(floor(0.0, parted), 254, np.where(floor(0.15, parted), 0, 205)).astype(np.uint8)
+        survey = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION, origin=(-2, -2))
+        assert len(survey.of_kind("corridor")) == 2
+        found = sorted(label["at"][0] for label in survey.of_kind("junction"))
+        assert found == pytest.approx(ends, abs=0.4)

@@ -1,6 +1,8 @@
 //! II-E: junctions, where corridors meet; their type is the number of ways out.
 
+use super::beside::placed;
 use super::corridors::{self, Strip};
+use super::ends::{overlap, shared, sorted, wider};
 use super::near::Near;
 use super::turned::{Turned, least_sine};
 use super::{JunctionKind, barriers};
@@ -269,10 +271,12 @@ const DEEP: f64 = 0.4;
 const ACROSS: f64 = 0.5;
 
 /// Dead ends: the places along at which a corridor that meets no other there is closed by something seen. Where it
-/// runs into the unknown, or opens into a hall, it has no end. Each with the corridor and which of its ends it is.
+/// runs into the unknown, or opens into a hall, it has no end, nor where it goes on beside itself, as one that bends does.
+/// Each with the corridor and which of its ends it is.
 pub fn ends(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<(usize, usize, f64)> {
     let mut found = Vec::new();
     let of_each = of_each(meetings, strips.len());
+    let placed = placed(views, strips.iter().map(Strip::place));
     for (n, strip) in strips.iter().enumerate() {
         let view = &views[strip.direction];
         for side in [0, 1] {
@@ -283,12 +287,27 @@ pub fn ends(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<(us
                     !goes_on(view, strip, side, (strip.along[side] - u) * sign(side) - meeting.reach[p.min(1)])
                 })
             });
-            if !met && let Some(place) = closed(view, strip, side, LOOK) {
+            if met {
+                continue;
+            }
+            let Some(place) = closed(view, strip, side, LOOK) else { continue };
+            let near = placed[strip.direction].touching(wider([place; 2], LOOK), strip.across);
+            if !near.into_iter().any(|m| m != n && goes_on_beside(view, strip, side, place, &strips[m])) {
                 found.push((n, side, place));
             }
         }
     }
     found
+}
+
+/// True when a strip that is closed at a place goes on past it as another of its direction, over floor that both share.
+fn goes_on_beside(view: &Turned, strip: &Strip, side: usize, place: f64, other: &Strip) -> bool {
+    let [low, high] = shared(strip.across, other.across);
+    let [from, to] = sorted([place, other.along[1 - side]]);
+    low < high
+        && overlap(other.along, wider([place; 2], LOOK)) >= 0.0
+        && (other.along[side] - place) * sign(side) >= strip.width()
+        && view.mean_blocked(view.column(from)..view.column(to) + 1, low, high) <= CLUTTER
 }
 
 /// True when a wall closes a strip at one of its ends, be there a door in it.
@@ -321,6 +340,8 @@ pub fn closed(view: &Turned, strip: &Strip, side: usize, look: f64) -> Option<f6
     let first = columns.into_iter().find(|&c| view.is_closed(c as usize, low, high))?;
     // A wall that is not quite square to the corridor shows in several columns.
     let deep = (-cells(DEEP)..=cells(DEEP)).map(|step| first + step).filter(|c| (0..=last).contains(c));
-    let across: f64 = deep.map(|c| view.occupied(c as usize, low, high)).sum();
-    (across >= ACROSS).then(|| view.along(first as usize) + if sign < 0.0 { view.cell } else { 0.0 })
+    let across: f64 = deep.clone().map(|c| view.occupied(c as usize, low, high)).sum();
+    // Of one that is thinner than the samples are apart hardly any lies on a wall.
+    let is_wall = across >= ACROSS || deep.into_iter().any(|c| view.is_barred(c as usize, low, high));
+    is_wall.then(|| view.along(first as usize) + if sign < 0.0 { view.cell } else { 0.0 })
 }

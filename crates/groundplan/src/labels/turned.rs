@@ -359,6 +359,11 @@ impl Turned {
         is_closed(self.blocked(column, low, high), self.barred(column, low, high))
     }
 
+    /// True when something stands across a column, be it thin.
+    pub fn is_barred(&self, column: usize, low: f64, high: f64) -> bool {
+        self.barred(column, low, high) > BARRED
+    }
+
     /// Share of a column that is occupied.
     pub fn occupied(&self, column: usize, low: f64, high: f64) -> f64 {
         self.share(What::Occupied, column, low, high)
