@@ -8,6 +8,7 @@ use super::ends::{around, overlap, shared, sorted, wider};
 use super::look::Look;
 use super::racks::{self, Row};
 use super::sections::{Columns, Free, WIDTH};
+use super::sided;
 use super::through::{Seen, Through};
 use super::turned::Turned;
 use super::widths::Widths;
@@ -101,6 +102,11 @@ fn up_to_walls(views: &[Turned], strips: &[Strip], placed: &[Beside], widest: f6
 
 /// The strips without what of them leads through bays.
 pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
+    let placed = placed(views, strips.iter().map(Strip::place));
+    let deep: Vec<bool> = strips.iter().map(|strip| strip.bays && is_deep(views, strip, &strips, &placed)).collect();
+    for (strip, is_deep) in strips.iter_mut().zip(deep) {
+        strip.bays &= !is_deep;
+    }
     let known = crossed(evidence, look, views, &strips, &[], &[]);
     let mut crossed = by_strip(&known, strips.len());
     let left: Vec<_> = strips.iter().zip(&crossed).map(|(strip, crossed)| left_between(strip, crossed)).collect();
@@ -112,7 +118,31 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], mut stri
         let known = self::crossed(evidence, look, views, &strips, &known, &is_narrower);
         crossed = by_strip(&known, strips.len());
     }
-    strips.into_iter().zip(crossed).flat_map(|(strip, crossed)| ways(strip, crossed)).collect()
+    // What is long enough for a way by itself and crosses no row that is known is no bay of one.
+    let is_alone = |strip: &Strip| !strip.is_short() && sided::is_sided(&views[strip.direction], strip);
+    let left = |(strip, crossed): (Strip, Vec<Crossed>)| {
+        if crossed.is_empty() && is_alone(&strip) { vec![strip] } else { ways(strip, crossed) }
+    };
+    strips.into_iter().zip(crossed).flat_map(left).collect()
+}
+
+/// True when a strip leads on between two sides for longer than a row is deep, without a way that crosses it: no bays do.
+/// Of all it is known where they lie.
+fn is_deep(views: &[Turned], strip: &Strip, strips: &[Strip], placed: &[Beside]) -> bool {
+    let view = &views[strip.direction];
+    let corners = view.rectangle(strip.along, strip.across);
+    let mut pieces = vec![(strip.along[0], strip.along[1])];
+    for other in views.iter().filter(|other| other.direction != strip.direction) {
+        let [along, across] = [0, 1].map(|axis| around(corners.iter().map(|&corner| other.place(corner)[axis])));
+        let crossing = placed[other.direction].touching(along, across).into_iter().map(|n| &strips[n]);
+        for way in crossing.filter(|way| !way.bays) {
+            if let Some([from, to]) = racks::crossed(view, other, way, way.along, strip.across) {
+                pieces = racks::without(pieces, from, to);
+            }
+        }
+    }
+    let piece = |(from, to): (f64, f64)| Strip { along: [from, to], ..strip.clone() };
+    pieces.into_iter().map(piece).any(|piece| piece.length() > racks::DEPTH.1 && sided::is_sided(view, &piece))
 }
 
 /// What uprights of the rows that a strip crosses leave of it, where they stand in it in most of them: a line along it was

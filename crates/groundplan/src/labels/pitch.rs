@@ -23,8 +23,13 @@ const POST: usize = 2;
 const BASE: usize = 12;
 /// A pattern stands out of the other lags by this factor.
 const CONTRAST: f64 = 8.0;
+/// A pitch is a whole number of so many parts of a step.
+const PARTS: f64 = 2.0;
 /// Of several lags the shortest that is this much of the strongest is the pitch: the others are its multiples.
 const FUNDAMENTAL: f64 = 0.7;
+/// Of what recurs along faces at least this share of the pairs has a row beside it from one to the other, and of those twice
+/// as far apart.
+const ALONG: [f64; 2] = [0.15, 0.05];
 /// Steps to either side of a lag over which it is the strongest.
 const TOP: usize = 4;
 
@@ -50,7 +55,7 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     let last = (LAGS.1 / STEP) as usize;
     let first = (LAGS.0 / STEP) as usize;
     let lags = 2 * (last + BASE) + 1;
-    let mut sums = vec![0.0; lags];
+    let (mut sums, mut faces) = (vec![0.0; lags], vec![0.0; lags]);
     for (offset, places) in specks(evidence, view) {
         if places.len() < FEWEST {
             continue;
@@ -65,14 +70,15 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
         for one in &specks {
             next += specks[next..].iter().take_while(|other| one.lag(other) < first - BASE).count();
             for other in specks[next..].iter().take_while(|other| one.lag(other) < lags) {
+                sums[one.lag(other)] += 1.0;
                 if is_face(one, other) {
-                    sums[one.lag(other)] += 1.0;
+                    faces[one.lag(other)] += 1.0;
                 }
             }
         }
     }
     // What lies around a lag is chance. How many pairs are more than that, and in its deviations.
-    let excess = |times: usize, lag: usize| {
+    let excess = |sums: &[f64], times: usize, lag: usize| {
         let total = |reach: usize| {
             let around = times * lag - times * reach..times * (lag + reach) + 1;
             (sums[around.clone()].iter().sum::<f64>(), around.len() as f64)
@@ -82,12 +88,25 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
         (near - chance, (near - chance) / libm::sqrt(chance + 1.0))
     };
     // What recurs does so twice as far off too.
-    let found: Vec<(f64, f64)> =
-        (first..=last).map(|lag| (excess(1, lag).0, excess(1, lag).1.min(excess(2, lag).1))).collect();
+    let found: Vec<(f64, f64)> = (first..=last)
+        .map(|lag| {
+            let (once, twice) = (excess(&sums, 1, lag), excess(&sums, 2, lag));
+            let is_along =
+                excess(&faces, 1, lag).0 >= ALONG[0] * once.0 && excess(&faces, 2, lag).0 >= ALONG[1] * twice.0;
+            (once.0, if is_along { once.1.min(twice.1) } else { 0.0 })
+        })
+        .collect();
     let top = |n: usize| found[n.saturating_sub(TOP)..].iter().take(2 * TOP + 1).all(|other| other.1 <= found[n].1);
     let tops: Vec<usize> = (0..found.len()).filter(|&n| found[n].1 >= CONTRAST && top(n)).collect();
     let most = tops.iter().map(|&n| found[n].0).fold(0.0, f64::max);
-    tops.into_iter().find(|&n| found[n].0 >= FUNDAMENTAL * most).map(|n| (first + n) as f64 * STEP)
+    let pitch = first + tops.into_iter().find(|&n| found[n].0 >= FUNDAMENTAL * most)?;
+    // Between the steps it is where the pairs lie in the middle; in parts of a step, so that what changes in a corner of a map
+    // as a rule changes no bay elsewhere.
+    let pairs = || (pitch - TOP..=pitch + TOP).map(|lag| (lag as f64, sums[lag]));
+    let chance = pairs().map(|(_, count)| count).fold(f64::INFINITY, f64::min);
+    let weight: f64 = pairs().map(|(_, count)| count - chance).sum();
+    let middle = pairs().map(|(lag, count)| lag * (count - chance)).sum::<f64>() / weight.max(1.0);
+    Some(if weight >= 1.0 { (middle * PARTS).round() / PARTS } else { pitch as f64 } * STEP)
 }
 
 /// Places of all specks along and across the view's direction, metres.

@@ -256,7 +256,13 @@ pub fn without(pieces: Vec<(f64, f64)>, from: f64, to: f64) -> Vec<(f64, f64)> {
 
 /// From where to where, along `view`, a corridor of another direction crosses the middle of a row; nothing when it
 /// ends before.
-fn crossed(view: &Turned, other: &Turned, crossing: &Strip, extent: [f64; 2], across: [f64; 2]) -> Option<[f64; 2]> {
+pub fn crossed(
+    view: &Turned,
+    other: &Turned,
+    crossing: &Strip,
+    extent: [f64; 2],
+    across: [f64; 2],
+) -> Option<[f64; 2]> {
     let middle = f64::midpoint(across[0], across[1]);
     let ends = crossing.across.map(|t| view.crossing(other, middle, t));
     let within = ends.iter().any(|[s, _]| (extent[0]..=extent[1]).contains(s));
