@@ -14,7 +14,7 @@ import groundplan
 from groundplan._results import NONE
 
 #: Maps with edges so near to a threshold that a hundredth of a degree decides.
-CLOSE = frozenset({"pillars", "triangle_grid", "turned_warehouse", "half_explored", "diagonal_only"})
+CLOSE = frozenset({"pillars", "triangle_grid", "turned_warehouse", "half_explored", "diagonal_only", "skewed"})
 
 
 def lengths(survey: groundplan.Survey) -> zoo.Points:
