@@ -136,6 +136,8 @@ def test_an_aisle_goes_on_where_its_sides_are_no_lines_any_more(shared: Path) ->
     survey = groundplan.survey(groundplan.read(shared / "maps" / "torwic_slam_warehouse.yaml"))
     main = max(survey.of_kind("corridor"), key=lambda label: float(np.hypot(*np.subtract(*label["axis"]))))
     assert max(y for _, y in main["axis"]) > 78.0
+    # At all but a twentieth of its places nothing stands within 1.9 m of its axis on one side, 1.55 m on the other, and
+    # 4.1 m across.
     assert main["width"] == pytest.approx(3.7, abs=0.2)
     corners = [label["at"] for label in survey.of_kind("junction") if label["type"] == "L"]
     assert min(np.hypot(*np.subtract(at, (39.1, 43.3))) for at in corners) < 1.0
