@@ -182,7 +182,7 @@ def test_a_turned_map_has_the_turned_walls(name: str, turn: int) -> None:
     inner = (zoo.surveyed(name).subdivision.edge_faces != NONE).all(axis=1)
     # What counts as a wall, and as an opening, is asked where nothing of the map is near to it: directions of turned
     # maps are a hundredth of a degree apart, and widths by pixels are whole pixels.
-    asked = {
+    asked: dict[str, Any] = {
         "walls.min_opening": 8.5 * RESOLUTION,
         "walls.disparity": between(zoo.surveyed(name).walls.disparity[inner], 0.05, 0.4),
         "walls.occupancy": between(zoo.surveyed(name).occupancy.edges[inner], 0.3, 0.7),
