@@ -136,6 +136,23 @@ def test_every_kind_of_label_is_drawn_and_counted_in_the_legend(tmp_path: Path) 
     ]
 
 
+def test_what_is_unsure_is_drawn_pale_and_counted(tmp_path: Path) -> None:
+    survey, map = surveyed(two_rooms())
+
+    def drawn(confidence: float) -> tuple[int, list[str]]:
+        labels = [label | {"confidence": confidence} for label in every_label()]
+        shown = dataclasses.replace(survey, labels=labels)
+        pixels = np.asarray(Image.open(draw_survey(shown, map, tmp_path / "survey.png")).convert("RGB"))
+        in_full = int((pixels == rgb(_style.DOOR)).all(axis=2).sum())
+        return in_full, [str(entry.get_label()) for entry in _labels.key(shown)]
+
+    (sure, said_sure), (unsure, said_unsure) = drawn(0.51), drawn(0.5)
+    # The legend's own is left.
+    assert 0 < unsure < sure
+    # A way, a rack, a door and five crossings; regions and pillars are as they are.
+    assert said_unsure == [*said_sure, "Pale or hollow: unsure (8)"]
+
+
 def test_a_door_lies_along_the_wall_that_it_is_in() -> None:
     survey, _ = surveyed(two_rooms())
     wall = survey.walls.points[:2]
@@ -171,7 +188,7 @@ def test_names_do_not_stand_over_one_another() -> None:
     square = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]
     narrow = [[4.9, 4.9], [5.1, 4.9], [5.1, 5.1], [4.9, 5.1]]
     regions = [{"polygon": square, "at": [5.0, 5.0], "name": "R01", "area": 100.0}]
-    _labels.name_regions([*regions, {"polygon": narrow, "at": [5.0, 5.0], "name": "R02", "area": 0.04}], [], names)
+    _names.name_regions([*regions, {"polygon": narrow, "at": [5.0, 5.0], "name": "R02", "area": 0.04}], [], names)
     (text,) = axes.texts
     # The large one steps aside, the one that has no room has no name.
     assert text.get_text() == "R01"

@@ -212,6 +212,13 @@ def test_places_are_points_names_and_faces() -> None:
     to_face = survey.route(corridor["name"], face)
     assert to_face is not None
     assert to_face.faces[-1] == face
+    # As exports name what has no name of its own.
+    from groundplan.export._places import places
+
+    crossing = next(place for place in places(survey) if place.name == "J01")
+    to_crossing = survey.route(corridor["name"], "J01")
+    assert to_crossing is not None
+    assert to_crossing.points[-1] == pytest.approx(crossing.centre, abs=0.5)
     stay = survey.route(face, face)
     assert stay is not None
     assert (stay.length, stay.faces.tolist()) == (0.0, [face])

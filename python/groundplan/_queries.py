@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Place: TypeAlias = "Sequence[float] | Floats | str | int"
 
 #: What a place may be, as a hint.
-PLACE = "a place is a point X,Y in metres, a label's name, or a face's id"
+PLACE = "a place is a point X,Y in metres, a label's name (A01, or J01 as in exports), or a face's id"
 #: What may help where there is no way, or no room to stand, as a hint.
 LESS = "a smaller clearance may leave room"
 
@@ -147,7 +147,7 @@ class Queries:
         """A point that a robot may stand on."""
         if isinstance(place, str):
             label = self._named(place)
-            ring = np.asarray(label["polygon"], dtype=np.float64)
+            ring = np.asarray(label.get("polygon", label.get("axis")), dtype=np.float64)
             axis = np.asarray(label["axis"]).mean(axis=0) if "axis" in label else ring.mean(axis=0)
             middle = label.get("at", axis)
         elif isinstance(place, int | np.integer) and not isinstance(place, bool):
@@ -168,6 +168,14 @@ class Queries:
 
     def _named(self, name: str) -> Label:
         names = {label["name"]: label for label in self.survey.labels if "name" in label and "polygon" in label}
+        if name not in names:
+            # As files that were exported call what the survey gives no name.
+            from groundplan.export._places import places
+
+            others = {place.name: self.survey.labels[place.label] for place in places(self.survey)}
+            names |= {
+                n: label for n, label in others.items() if n not in names and ("polygon" in label or "axis" in label)
+            }
         if name not in names:
             own = [known for known in names if known.casefold() == name.casefold()]
             near = own or get_close_matches(name, names, 1)

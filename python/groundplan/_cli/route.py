@@ -32,7 +32,10 @@ def fill(own: argparse.ArgumentParser) -> None:
     own.add_argument("survey", metavar="SURVEY", type=Path, help="a survey.json, or the directory that holds it")
     for name, what in (("a", "where it begins"), ("b", "and ends")):
         own.add_argument(
-            name, metavar=name.upper(), type=spot, help=f"{what}: a point X,Y in metres, a label's name, or a face's id"
+            name,
+            metavar=name.upper(),
+            type=spot,
+            help=f"{what}: a point X,Y in metres, a label's name (A01, or J01 as in exports), or a face's id",
         )
     own.add_argument(
         "--clearance", type=number, default=0.3, metavar="M", help="to keep from what is occupied, m (default: 0.3)"

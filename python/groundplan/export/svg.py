@@ -10,11 +10,11 @@ import numpy as np
 
 from groundplan._errors import ParameterError
 from groundplan._files import write_bytes
-from groundplan._shapes import readable
 from groundplan.export._places import Place, places, spread
 from groundplan.export._svg import Drawing, names_on
 from groundplan.figures import _style as ink
-from groundplan.figures._labels import JUNCTION_NAMES, door_direction, name_corridors, name_regions
+from groundplan.figures._labels import JUNCTION_NAMES, door_direction
+from groundplan.figures._names import name_corridors, name_racks, name_regions
 from groundplan.figures._panels import round_length
 from groundplan.figures._underlay import Extent, underlay
 
@@ -148,14 +148,7 @@ def _names(drawing: Drawing, survey: Survey, found: list[Place]) -> None:
         if place.kind == "junction" and place.use in ("X", "T", "L", "Y"):
             drawing.text(layer, place.centre, place.use, 1.8, fill="#ffffff", stroke="none", font_weight="bold")
     name_corridors(kinds["corridor"], kinds["junction"], names)
-    for place in found:
-        if place.kind == "rack" and place.axis is not None and place.width:
-            (x0, y0), (x1, y1) = place.axis
-            room = math.hypot(x1 - x0, y1 - y0) / max(1, len(place.name))
-            size = min(0.5 * place.width * names.dots, room * names.dots / 0.75, 7.0)
-            if size >= 4.0:
-                angle = math.degrees(math.atan2(y1 - y0, x1 - x0))
-                names.write(place.centre, place.name, size, ink.INK, 7, readable(angle))
+    name_racks(survey.of_kind("rack"), names)
     name_regions([region for region in kinds["region"] if region.get("polygon")], kinds["corridor"], names)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,23 +17,20 @@ from matplotlib.path import Path
 from matplotlib.textpath import TextPath
 from matplotlib.transforms import IdentityTransform
 
-from groundplan._results import Label
-from groundplan._shapes import readable
+from groundplan._results import UNSURE, Label
 from groundplan.figures import _style as ink
-from groundplan.figures._names import Names, meetings, on_axes, widest_gap
+from groundplan.figures._names import Names, closed, name_corridors, name_racks, name_regions, on_axes
 from groundplan.survey import Survey
 
 Points = npt.NDArray[np.float64]
 
+#: Kinds that are drawn pale where they are unsure.
+PALE = ("corridor", "rack", "junction", "door")
 JUNCTION_NAMES = {"X": "X junction", "T": "T junction", "L": "L corner", "Y": "Y junction", "end": "Dead end"}
-#: Sizes of type along a corridor, points: it is left out where even the least does not fit.
-LEAST_TYPE, GREATEST_TYPE = 4.5, 9.0
-#: Of a region's name, the second where the first does not fit.
-REGION_TYPE = (6.5, 5.0)
 
 
 def draw_labels(axes: Axes, survey: Survey) -> None:
-    """Draw every label, the large beneath the small."""
+    """Draw every label, the large beneath the small; ways, crossings, racks and doors that are unsure are pale."""
     kinds = {kind: survey.of_kind(kind) for kind in ("region", "rack", "corridor", "junction", "door", "pillar")}
     names = Names(points_per_metre(axes), on_axes(axes))
     draw_regions(axes, kinds["region"])
@@ -42,8 +38,9 @@ def draw_labels(axes: Axes, survey: Survey) -> None:
     draw_doors(axes, kinds["door"], survey)
     draw_pillars(axes, kinds["pillar"])
     draw_junctions(axes, kinds["junction"], kinds["corridor"], names)
-    draw_corridors(axes, kinds["corridor"], kinds["junction"])
+    draw_corridors(axes, kinds["corridor"], kinds["junction"], survey.labels)
     name_corridors(kinds["corridor"], kinds["junction"], names)
+    name_racks(kinds["rack"], names)
     name_regions(kinds["region"], kinds["corridor"], names)
 
 
@@ -73,6 +70,10 @@ def key(survey: Survey) -> list[Artist]:
         entries.append(Line2D([], [], color=ink.DOOR, lw=3, solid_capstyle="butt", label=f"Door ({count})"))
     if count := len(survey.of_kind("pillar")):
         entries.append(dot(ink.PILLAR, 4, f"Pillar ({count})"))
+    if count := sum(is_unsure(label) for kind in PALE for label in survey.of_kind(kind)):
+        entries.append(
+            Patch(facecolor="none", edgecolor=ink.QUIET, lw=0.8, ls=":", label=f"Pale or hollow: unsure ({count})")
+        )
     return entries
 
 
@@ -99,28 +100,6 @@ def draw_regions(axes: Axes, regions: Sequence[Label]) -> None:
         axes.add_patch(patch)
 
 
-def name_regions(regions: Sequence[Label], corridors: Sequence[Label], names: Names) -> None:
-    """Names where there is room for them, those of large regions first; a way goes by the names of its corridors."""
-    middles = np.array([np.mean(corridor["axis"], axis=0) for corridor in corridors]).reshape(-1, 2)
-    line = 1.15 * REGION_TYPE[0] / names.dots
-    aside = [
-        (line * far * x, line * far * y) for far in (1, 2, 4, 8, 16) for x, y in ((0, 1), (0, -1), (2, 0), (-2, 0))
-    ]
-    for region in sorted(regions, key=lambda region: -float(region.get("area", 0))):
-        name, inside = region.get("name"), closed(np.asarray(region["polygon"], dtype=np.float64))
-        if not name or (region.get("use") == "corridor" and inside.contains_points(middles).any()):
-            continue
-        holes = [closed(np.asarray(hole, dtype=np.float64)) for hole in region.get("holes", [])]
-        x, y = region["at"]
-        others = [(x + dx, y + dy) for dx, dy in aside]
-        free = (at for at in others if inside.contains_point(at) and not any(h.contains_point(at) for h in holes))
-        # The place that it has is in it; another has to be.
-        places = [(x, y), *free]
-        room = ((at, size) for size in REGION_TYPE for at in places if names.fits(at, name, size))
-        if found := next(room, None):
-            names.write(found[0], name, found[1], ink.INK, 8)
-
-
 def wound(ring: Sequence[Sequence[float]], side: int) -> Points:
     """A ring counter-clockwise (1) or clockwise (-1), (N, 2)."""
     points = np.asarray(ring, dtype=np.float64)
@@ -129,17 +108,17 @@ def wound(ring: Sequence[Sequence[float]], side: int) -> Points:
     return points if doubled_area * side >= 0 else points[::-1]
 
 
-def closed(ring: Points) -> Path:
-    """A ring as a path."""
-    return Path(np.concatenate([ring, ring[:1]]), closed=True)
+def is_unsure(label: Label) -> bool:
+    """Whether a label is drawn pale."""
+    return bool(label.get("confidence", 1.0) <= UNSURE)
 
 
 def draw_racks(axes: Axes, racks: Sequence[Label]) -> None:
     """Ochre polygons with a thin edge."""
-    polygons = [np.asarray(label["polygon"]) for label in racks if label.get("polygon")]
+    shown = [label for label in racks if label.get("polygon")]
     collection = PolyCollection(
-        polygons,
-        facecolors=[to_rgba(ink.RACK, 0.5)],
+        [np.asarray(label["polygon"]) for label in shown],
+        facecolors=[to_rgba(ink.RACK, 0.15 if is_unsure(label) else 0.5) for label in shown],
         edgecolors=[to_rgba(ink.RACK, 0.9)],
         linewidths=0.5,
         zorder=2,
@@ -147,39 +126,29 @@ def draw_racks(axes: Axes, racks: Sequence[Label]) -> None:
     axes.add_collection(collection, autolim=False)
 
 
-def draw_corridors(axes: Axes, corridors: Sequence[Label], junctions: Sequence[Label]) -> None:
+def draw_corridors(axes: Axes, corridors: Sequence[Label], junctions: Sequence[Label], labels: Sequence[Label]) -> None:
     """Translucent polygons with their centre lines, and corners: the corridors that end there end in their middle."""
-    rings, corners = (
-        [closed(wound(label["polygon"], 1)) for label in labels if label.get("polygon")]
-        for labels in (corridors, junctions)
-    )
-    if rings:
-        fill = to_rgba(ink.CORRIDOR, 0.24)
-        # One shape for them all: where two cross, the tint is no deeper.
-        shape = Path.make_compound_path(*rings, *corners)
-        axes.add_patch(PathPatch(shape, facecolor=fill, edgecolor="none", lw=0, zorder=3))
-        outlines = [ring.vertices for ring in rings]
-        edge = to_rgba(ink.CORRIDOR, 0.6)
-        axes.add_collection(LineCollection(outlines, colors=[edge], linewidths=0.4, zorder=3.1), autolim=False)
+    unsure = [corridor for corridor in corridors if is_unsure(corridor)]
+    sure = [corridor for corridor in corridors if not is_unsure(corridor)]
+    corners = [label for label in junctions if not any(is_unsure(labels[n]) for n in label.get("corridors", ()))]
+    _draw_ways(axes, unsure, unsure, 0.08, 0.45)
+    _draw_ways(axes, sure, [*sure, *corners], 0.24, 0.95)
+
+
+def _draw_ways(axes: Axes, corridors: Sequence[Label], filled: Sequence[Label], tint: float, line: float) -> None:
+    """Corridors with so deep a tint, and centre lines as deep as that."""
+    # One shape for them all: where two cross, the tint is no deeper.
+    tinted = [closed(wound(label["polygon"], 1)) for label in filled if label.get("polygon")]
+    if not corridors or not tinted:
+        return
+    fill = to_rgba(ink.CORRIDOR, tint)
+    axes.add_patch(PathPatch(Path.make_compound_path(*tinted), facecolor=fill, edgecolor="none", lw=0, zorder=3))
+    outlines = [closed(np.asarray(label["polygon"])).vertices for label in corridors if label.get("polygon")]
+    edge = to_rgba(ink.CORRIDOR, 0.6)
+    axes.add_collection(LineCollection(outlines, colors=[edge], linewidths=0.4, zorder=3.1), autolim=False)
     lines = [np.asarray(corridor["axis"], dtype=np.float64) for corridor in corridors]
-    style = LineCollection(lines, colors=[to_rgba(ink.CORRIDOR, 0.95)], linewidths=0.8, linestyles="--", zorder=5)
+    style = LineCollection(lines, colors=[to_rgba(ink.CORRIDOR, line)], linewidths=0.8, linestyles="--", zorder=5)
     axes.add_collection(style, autolim=False)
-
-
-def name_corridors(corridors: Sequence[Label], junctions: Sequence[Label], names: Names) -> None:
-    """Names along the centre lines, where these have most room between crossings."""
-    lines = [np.asarray(corridor["axis"], dtype=np.float64) for corridor in corridors]
-    crossings = np.array([label["at"] for label in junctions], dtype=np.float64).reshape(-1, 2)
-    for corridor, line in zip(corridors, lines, strict=True):
-        name = corridor.get("name")
-        if not name:
-            continue
-        stops = np.concatenate([crossings, meetings(line, lines)])
-        middle, room = widest_gap(line, stops, 0.75 * corridor["width"])
-        size = min(0.62 * corridor["width"] * names.dots, room * names.dots / (0.72 * len(name)), GREATEST_TYPE)
-        if size >= LEAST_TYPE:
-            angle = math.degrees(math.atan2(*(line[-1] - line[0])[::-1]))
-            names.write(middle, name, size, ink.CORRIDOR_INK, 7, readable(angle))
 
 
 def draw_junctions(axes: Axes, junctions: Sequence[Label], corridors: Sequence[Label], names: Names) -> None:
@@ -189,35 +158,35 @@ def draw_junctions(axes: Axes, junctions: Sequence[Label], corridors: Sequence[L
     for label in junctions:
         names.take(label["at"], size, size)
     for kind, fill in ink.JUNCTIONS.items():
-        at = np.array([label["at"] for label in junctions if label["type"] == kind], dtype=np.float64)
-        if not len(at):
-            continue
-        if kind == "end":
-            axes.scatter(
-                at[:, 0],
-                at[:, 1],
-                s=(0.7 * size) ** 2,
-                c=fill,
-                marker="s",
-                edgecolors="white",
-                linewidths=0.5,
-                zorder=9,
-            )
-            continue
-        axes.scatter(at[:, 0], at[:, 1], s=size**2, c=fill, edgecolors="white", linewidths=0.6, zorder=9)
-        if size >= 6:
-            letter = PathCollection(
-                [centred(kind)],
-                sizes=[(0.62 * size) ** 2],
-                offsets=at,
-                offset_transform=axes.transData,
-                facecolors="white",
-                linewidths=0,
-                zorder=10,
-            )
-            # Its size alone scales it; the offsets place it.
-            letter.set_transform(IdentityTransform())
-            axes.add_collection(letter, autolim=False)
+        for pale in (False, True):
+            own = [label["at"] for label in junctions if label["type"] == kind and is_unsure(label) == pale]
+            if own:
+                inks = ("white", fill) if pale else (fill, "white")
+                _draw_crossings(axes, np.array(own, dtype=np.float64), kind, size, inks)
+
+
+def _draw_crossings(axes: Axes, at: Points, kind: str, size: float, inks: tuple[str, str]) -> None:
+    """Those of one type: the ink that fills them, and that of their edges and letters."""
+    fill, edge = inks
+    if kind == "end":
+        axes.scatter(
+            at[:, 0], at[:, 1], s=(0.7 * size) ** 2, c=fill, marker="s", edgecolors=edge, linewidths=0.6, zorder=9
+        )
+        return
+    axes.scatter(at[:, 0], at[:, 1], s=size**2, c=fill, edgecolors=edge, linewidths=0.6, zorder=9)
+    if size >= 6:
+        letter = PathCollection(
+            [centred(kind)],
+            sizes=[(0.62 * size) ** 2],
+            offsets=at,
+            offset_transform=axes.transData,
+            facecolors=edge,
+            linewidths=0,
+            zorder=10,
+        )
+        # Its size alone scales it; the offsets place it.
+        letter.set_transform(IdentityTransform())
+        axes.add_collection(letter, autolim=False)
 
 
 def centred(letter: str) -> Path:
@@ -234,9 +203,8 @@ def draw_doors(axes: Axes, doors: Sequence[Label], survey: Survey) -> None:
         at = np.asarray(door["at"], dtype=np.float64)
         along = door_direction(door, at, survey) * max(float(door["width"]), 1e-6) / 2
         strokes.append(np.stack([at - along, at + along]))
-    axes.add_collection(
-        LineCollection(strokes, colors=ink.DOOR, linewidths=2.4, capstyle="butt", zorder=6), autolim=False
-    )
+    inks = [to_rgba(ink.DOOR, 0.4 if is_unsure(door) else 1.0) for door in doors]
+    axes.add_collection(LineCollection(strokes, colors=inks, linewidths=2.4, capstyle="butt", zorder=6), autolim=False)
 
 
 def door_direction(door: Label, at: Points, survey: Survey) -> Points:

@@ -8,7 +8,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
+from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
+
+from groundplan._results import Label
+from groundplan._shapes import readable
+from groundplan.figures import _style as ink
 
 Points = npt.NDArray[np.float64]
 #: Puts a name on what it is written on: the place, the name, its size in points, colour, zorder and degrees.
@@ -18,6 +23,10 @@ Put = Callable[[Sequence[float] | Points, str, float, str, float, float], None]
 LETTER, LINE = 0.66, 1.0
 #: Points between two names.
 CLEAR = 1.5
+#: Sizes of type along a corridor or a rack, points: it is left out where even the least does not fit.
+LEAST_TYPE, GREATEST_TYPE = 4.5, 9.0
+#: Of a region's name, the second where the first does not fit.
+REGION_TYPE = (6.5, 5.0)
 
 
 class Names:
@@ -108,3 +117,58 @@ def widest_gap(line: Points, crossings: Points, near: float) -> tuple[Points, fl
     wide = gaps >= 0.85 * gaps.max()
     best = np.flatnonzero(wide)[np.argmin(np.abs(middles[wide] - length / 2))]
     return start + middles[best] * unit, float(gaps[best])
+
+
+def name_corridors(corridors: Sequence[Label], junctions: Sequence[Label], names: Names) -> None:
+    """Names along the centre lines, where these have most room between crossings."""
+    lines = [np.asarray(corridor["axis"], dtype=np.float64) for corridor in corridors]
+    crossings = np.array([label["at"] for label in junctions], dtype=np.float64).reshape(-1, 2)
+    for corridor, line in zip(corridors, lines, strict=True):
+        stops = np.concatenate([crossings, meetings(line, lines)])
+        _name_along(corridor, line, *widest_gap(line, stops, 0.75 * corridor["width"]), ink.CORRIDOR_INK, names)
+
+
+def name_racks(racks: Sequence[Label], names: Names) -> None:
+    """Names along the racks that have room for them."""
+    for rack in racks:
+        if "axis" in rack and "width" in rack:
+            line = np.asarray(rack["axis"], dtype=np.float64)
+            _name_along(rack, line, line.mean(axis=0), float(np.hypot(*(line[-1] - line[0]))), ink.INK, names)
+
+
+def _name_along(label: Label, line: Points, at: Points, room: float, colour: str, names: Names) -> None:
+    """The name of what is as wide as it says, at a place of its centre line with so much room, metres."""
+    name = label.get("name")
+    if not name:
+        return
+    size = min(0.62 * label["width"] * names.dots, room * names.dots / (0.72 * len(name)), GREATEST_TYPE)
+    if size >= LEAST_TYPE:
+        angle = math.degrees(math.atan2(*(line[-1] - line[0])[::-1]))
+        names.write(at, name, size, colour, 7, readable(angle))
+
+
+def name_regions(regions: Sequence[Label], corridors: Sequence[Label], names: Names) -> None:
+    """Names where there is room for them, those of large regions first; a way goes by the names of its corridors."""
+    middles = np.array([np.mean(corridor["axis"], axis=0) for corridor in corridors]).reshape(-1, 2)
+    line = 1.15 * REGION_TYPE[0] / names.dots
+    aside = [
+        (line * far * x, line * far * y) for far in (1, 2, 4, 8, 16) for x, y in ((0, 1), (0, -1), (2, 0), (-2, 0))
+    ]
+    for region in sorted(regions, key=lambda region: -float(region.get("area", 0))):
+        name, inside = region.get("name"), closed(np.asarray(region["polygon"], dtype=np.float64))
+        if not name or (region.get("use") == "corridor" and inside.contains_points(middles).any()):
+            continue
+        holes = [closed(np.asarray(hole, dtype=np.float64)) for hole in region.get("holes", [])]
+        x, y = region["at"]
+        others = [(x + dx, y + dy) for dx, dy in aside]
+        free = (at for at in others if inside.contains_point(at) and not any(h.contains_point(at) for h in holes))
+        # The place that it has is in it; another has to be.
+        places = [(x, y), *free]
+        room = ((at, size) for size in REGION_TYPE for at in places if names.fits(at, name, size))
+        if found := next(room, None):
+            names.write(found[0], name, found[1], ink.INK, 8)
+
+
+def closed(ring: Points) -> Path:
+    """A ring as a path."""
+    return Path(np.concatenate([ring, ring[:1]]), closed=True)

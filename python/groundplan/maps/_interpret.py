@@ -26,6 +26,7 @@ from groundplan.maps._map import FREE, UNKNOWN, MapWarning
 from groundplan.maps._source import Bytes, Described, Occupancies, Picture
 from groundplan.maps._tally import Tally, tally
 from groundplan.maps._warnings import (
+    RAW,
     assumed_limits,
     grey_as_free,
     nonsense,
@@ -135,7 +136,8 @@ def interpret(
             named = ", ".join(map(str, absent))
             warnings.append(MapWarning("unknown-absent", f"no pixel has the grey {named} given as unknown"))
     darker = any(warning.code == "unknown-as-occupied" for warning in warnings)
-    odd = nonsense(shares(counts, states), high, low, walls_darker=darker)
+    hint = RAW if meaning.mode == "raw" else ""
+    odd = nonsense(shares(counts, states), high, low, walls_darker=darker, hint=hint)
     if meaning.mode != "raw" and not odd:
         odd = walls_as_unknown(seen.rows, counts, states, darkness(shades, meaning))
     return pixels, values, states, warnings + odd

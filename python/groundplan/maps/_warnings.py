@@ -87,12 +87,18 @@ def unknown_as_occupied(level: int, levels: Levels, meaning: Meaning) -> MapWarn
     )
 
 
+#: What may help where a grey is taken as it is.
+RAW = (
+    "; in mode raw a grey from 0 to 100 is a percentage occupied and others are unknown: "
+    "--mode trinary reads what is dark as occupied"
+)
+
 #: The state that no pixel has, by the warning that says so.
 MISSING = {"no-free-space": FREE, "no-occupied": OCCUPIED}
 
 
 def nonsense(
-    shares: dict[int, float], high: float | None, low: float | None, *, walls_darker: bool = False
+    shares: dict[int, float], high: float | None, low: float | None, *, walls_darker: bool = False, hint: str = ""
 ) -> list[MapWarning]:
     """Warnings of a map in which a class is missing, or nearly all there is.
 
@@ -104,13 +110,15 @@ def nonsense(
         Thresholds that would fit the picture better than those stated.
     walls_darker : bool
         Whether it is told already that a grey counts as occupied although the walls are darker.
+    hint : str
+        What may help where no threshold would.
     """
     warnings = []
     if shares[FREE] == 0:
-        help_ = f"; --free-thresh {low:g} would make its lightest grey free" if low is not None else ""
+        help_ = f"; --free-thresh {low:g} would make its lightest grey free" if low is not None else hint
         warnings.append(MapWarning("no-free-space", f"no pixel of the map is free{help_}"))
     if shares[OCCUPIED] == 0:
-        help_ = f"; --occupied-thresh {high:g} would make its dark greys occupied" if high is not None else ""
+        help_ = f"; --occupied-thresh {high:g} would make its dark greys occupied" if high is not None else hint
         warnings.append(MapWarning("no-occupied", f"no pixel of the map is occupied{help_}"))
     elif high is not None:
         said = f"most dark greys of the picture count as unknown; --occupied-thresh {high:g} would make them occupied"

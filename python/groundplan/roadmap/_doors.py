@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
+from groundplan._results import UNSURE
 from groundplan.roadmap._lanes import Way
 from groundplan.roadmap._model import Point
 from groundplan.roadmap._pixels import CLEAR_M, Pixels
@@ -27,8 +28,6 @@ AT_STOP_M = 0.3
 STRAIGHT_M, STEP_M = 8.0, 0.25
 #: A turn is worth a detour of so much, metres.
 TURN_M = 2.0
-#: Labels of so little confidence are spoken of as unsure.
-UNSURE = 0.5
 #: What is less is a small room, square metres.
 SMALL_M2 = 6.0
 #: A lane that runs through a region for longer than this is one of its lanes, metres.
