@@ -70,7 +70,7 @@ def key(survey: Survey) -> list[Artist]:
         entries.append(Line2D([], [], color=ink.DOOR, lw=3, solid_capstyle="butt", label=f"Door ({count})"))
     if count := len(survey.of_kind("pillar")):
         entries.append(dot(ink.PILLAR, 4, f"Pillar ({count})"))
-    if count := sum(is_unsure(label) for kind in PALE for label in survey.of_kind(kind)):
+    if count := sum(map(is_pale, survey.labels)):
         entries.append(
             Patch(facecolor="none", edgecolor=ink.QUIET, lw=0.8, ls=":", label=f"Pale or hollow: unsure ({count})")
         )
@@ -108,9 +108,9 @@ def wound(ring: Sequence[Sequence[float]], side: int) -> Points:
     return points if doubled_area * side >= 0 else points[::-1]
 
 
-def is_unsure(label: Label) -> bool:
-    """Whether a label is drawn pale."""
-    return bool(label.get("confidence", 1.0) <= UNSURE)
+def is_pale(label: Label) -> bool:
+    """Whether a label is drawn so because it is unsure."""
+    return label["kind"] in PALE and bool(label.get("confidence", 1.0) <= UNSURE)
 
 
 def draw_racks(axes: Axes, racks: Sequence[Label]) -> None:
@@ -118,7 +118,7 @@ def draw_racks(axes: Axes, racks: Sequence[Label]) -> None:
     shown = [label for label in racks if label.get("polygon")]
     collection = PolyCollection(
         [np.asarray(label["polygon"]) for label in shown],
-        facecolors=[to_rgba(ink.RACK, 0.15 if is_unsure(label) else 0.5) for label in shown],
+        facecolors=[to_rgba(ink.RACK, 0.15 if is_pale(label) else 0.5) for label in shown],
         edgecolors=[to_rgba(ink.RACK, 0.9)],
         linewidths=0.5,
         zorder=2,
@@ -128,9 +128,9 @@ def draw_racks(axes: Axes, racks: Sequence[Label]) -> None:
 
 def draw_corridors(axes: Axes, corridors: Sequence[Label], junctions: Sequence[Label], labels: Sequence[Label]) -> None:
     """Translucent polygons with their centre lines, and corners: the corridors that end there end in their middle."""
-    unsure = [corridor for corridor in corridors if is_unsure(corridor)]
-    sure = [corridor for corridor in corridors if not is_unsure(corridor)]
-    corners = [label for label in junctions if not any(is_unsure(labels[n]) for n in label.get("corridors", ()))]
+    unsure = [corridor for corridor in corridors if is_pale(corridor)]
+    sure = [corridor for corridor in corridors if not is_pale(corridor)]
+    corners = [label for label in junctions if not any(is_pale(labels[n]) for n in label.get("corridors", ()))]
     _draw_ways(axes, unsure, unsure, 0.08, 0.45)
     _draw_ways(axes, sure, [*sure, *corners], 0.24, 0.95)
 
@@ -159,7 +159,7 @@ def draw_junctions(axes: Axes, junctions: Sequence[Label], corridors: Sequence[L
         names.take(label["at"], size, size)
     for kind, fill in ink.JUNCTIONS.items():
         for pale in (False, True):
-            own = [label["at"] for label in junctions if label["type"] == kind and is_unsure(label) == pale]
+            own = [label["at"] for label in junctions if label["type"] == kind and is_pale(label) == pale]
             if own:
                 inks = ("white", fill) if pale else (fill, "white")
                 _draw_crossings(axes, np.array(own, dtype=np.float64), kind, size, inks)
@@ -203,7 +203,7 @@ def draw_doors(axes: Axes, doors: Sequence[Label], survey: Survey) -> None:
         at = np.asarray(door["at"], dtype=np.float64)
         along = door_direction(door, at, survey) * max(float(door["width"]), 1e-6) / 2
         strokes.append(np.stack([at - along, at + along]))
-    inks = [to_rgba(ink.DOOR, 0.4 if is_unsure(door) else 1.0) for door in doors]
+    inks = [to_rgba(ink.DOOR, 0.4 if is_pale(door) else 1.0) for door in doors]
     axes.add_collection(LineCollection(strokes, colors=inks, linewidths=2.4, capstyle="butt", zorder=6), autolim=False)
 
 
