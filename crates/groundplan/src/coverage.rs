@@ -3,6 +3,7 @@
 use crate::arrangement::Arrangement;
 use crate::bits::{self, WORD, lowest};
 use crate::directions::Directions;
+use crate::ends::{around, sorted};
 use crate::gradients::Gradients;
 use crate::grid::{Frame, tidy};
 use crate::lines::Lines;
@@ -78,7 +79,7 @@ impl<'a> Coverage<'a> {
             let heading = [libm::cos(angle), libm::sin(angle)];
             let ends = [frame.width, frame.height].map(|side| [0.0, side as f64]);
             let places = ends[0].into_iter().flat_map(|x| ends[1].map(|y| x * heading[0] + y * heading[1] + diagonal));
-            let (low, high) = places.fold((f64::INFINITY, 0.0f64), |(low, high), at| (low.min(at), high.max(at)));
+            let [low, high] = around(places);
             // What a pixel on the border covers, and what rounding may add.
             let words = (low - BEYOND).max(0.0) as usize / WORD..(high + BEYOND) as usize / WORD + 1;
             Family { angle, heading, words, members }
@@ -140,7 +141,7 @@ impl<'a> Coverage<'a> {
                     let [x, y] = arrangement.vertices[v as usize];
                     x * cos + y * sin + diagonal
                 });
-                let (from, to) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+                let [from, to] = sorted(ends);
                 // Whole bins within; a shorter edge is judged by the bin that its middle lies in.
                 let (mut first, mut last) = (from.round() as usize, to.round() as usize);
                 if first == last {
@@ -160,10 +161,10 @@ impl<'a> Coverage<'a> {
                     tidy((place - ends[0]).abs() * frame.resolution)
                 };
                 let before = runs.len();
-                runs.extend(bits::runs(&bits, first - start..last - start, true).map(|run| {
-                    let (a, b) = (metres(start + run.start), metres(start + run.end));
-                    [a.min(b), a.max(b)]
-                }));
+                runs.extend(
+                    bits::runs(&bits, first - start..last - start, true)
+                        .map(|run| sorted([metres(start + run.start), metres(start + run.end)])),
+                );
                 if ends[0] > ends[1] {
                     runs[before..].reverse();
                 }

@@ -31,6 +31,7 @@ mod bits;
 mod coverage;
 mod crossings;
 pub mod directions;
+mod ends;
 pub mod gradients;
 pub mod grid;
 pub mod labels;

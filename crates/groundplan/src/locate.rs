@@ -4,6 +4,7 @@
 //! of that cell on, lines are crossed that part the face from the point. Each crossing leaves one less of them.
 
 use crate::arrangement::{Arrangement, NONE, arrange};
+use crate::ends::{around, sorted};
 use crate::grid::Frame;
 use crate::lines::Lines;
 
@@ -205,14 +206,13 @@ impl Polygons {
                 ring.iter().zip(ring.iter().cycle().skip(1)).map(move |(&p, &q)| (*polygon, p, q))
             })
         };
-        let low = sides().map(|s| s.1[1]).fold(f64::INFINITY, f64::min);
-        let high = sides().map(|s| s.1[1]).fold(f64::NEG_INFINITY, f64::max);
+        let [low, high] = around(sides().map(|s| s.1[1]));
         let bands = sides().count().clamp(1, 1 << 12);
         let bands_per_metre = if high > low { bands as f64 / (high - low) } else { 0.0 };
         let mut made = Self { sides: Vec::new(), offsets: Vec::new(), low, bands_per_metre };
         let mut lists: Vec<Vec<Side>> = vec![Vec::new(); bands + 1];
         for side in sides() {
-            let (from, to) = (made.band(side.1[1].min(side.2[1])), made.band(side.1[1].max(side.2[1])));
+            let [from, to] = sorted([side.1[1], side.2[1]]).map(|y| made.band(y));
             lists[from.min(bands)..=to.min(bands)].iter_mut().for_each(|list| list.push(side));
         }
         made.offsets.push(0);

@@ -1,6 +1,7 @@
 //! II-A: pixels projected across many angles, one after another.
 
 use crate::bands::fold;
+use crate::ends::around;
 
 /// A pixel's weight, in whole parts.
 pub(crate) const FRACTIONS: u32 = 16;
@@ -86,8 +87,8 @@ impl Points {
         let (nx, ny) = (-libm::sin(angle) * scale, libm::cos(angle) * scale);
         let [xs, ys] = if self.xs.is_empty() { [[0.5; 2]; 2] } else { self.within };
         let corners = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| nx * xs[i] + ny * ys[j]);
-        let low = corners.into_iter().fold(f64::INFINITY, f64::min).floor() as i64 - 1 - margin as i64;
-        let high = corners.into_iter().fold(f64::NEG_INFINITY, f64::max).ceil() as i64 + 2 + margin as i64;
+        let [low, high] = around(corners.into_iter());
+        let (low, high) = (low.floor() as i64 - 1 - margin as i64, high.ceil() as i64 + 2 + margin as i64);
         let parts = f64::from(FRACTIONS);
         Across {
             normal: [(nx * parts) as f32, (ny * parts) as f32],

@@ -2,11 +2,11 @@
 
 use super::beside::placed;
 use super::corridors::Strip;
-use super::ends::wider;
 use super::racks::{Crossings, Row, SAME, lines_behind, without};
 use super::turned::Turned;
 use super::whole::{RIM, trimmed};
 use crate::bands::flat_map_each;
+use crate::ends::wider;
 
 /// Behind a wall from so far to so far off, metres, more than this share is not free.
 const BEYOND: [f64; 2] = [0.2, 0.7];

@@ -71,8 +71,8 @@ pub fn placed(views: &[Turned], things: impl Iterator<Item = (usize, [f64; 2], [
 
 #[cfg(test)]
 mod tests {
-    use super::super::ends::wider;
     use super::*;
+    use crate::ends::wider;
 
     #[test]
     fn all_that_touches_a_piece_is_found_and_nothing_far_away() {

@@ -2,13 +2,13 @@
 //! with floor before both, oblong, and of a depth that others on the map have too.
 
 use super::beside::{Beside, placed};
-use super::ends::wider;
 use super::near::Near;
 use super::racks::{DEPTH, Row, apart};
 use super::runs::{close, runs};
 use super::turned::Turned;
 use crate::bands::flat_map_each;
 use crate::bits::Bits;
+use crate::ends::wider;
 use std::cell::OnceCell;
 use std::ops::Range;
 

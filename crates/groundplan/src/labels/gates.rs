@@ -4,7 +4,6 @@
 use super::Evidence;
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip, UNTOLD};
-use super::ends::{around, overlap, shared, sorted, wider};
 use super::look::Look;
 use super::racks::{self, Row};
 use super::sections::{Columns, Free, WIDTH};
@@ -13,6 +12,7 @@ use super::through::{Seen, Through};
 use super::turned::Turned;
 use super::widths::Widths;
 use crate::bands::flat_map_each;
+use crate::ends::{around, overlap, shared, sorted, wider};
 use std::collections::BTreeMap;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.

@@ -1,10 +1,10 @@
 //! The ground of racks that stand on legs, in the places of a view: it is taken, though the map shows floor there.
 
 use super::Evidence;
-use super::ends::{around, sorted};
 use super::racks::Row;
 use super::recall::Key;
 use super::turned::{Turned, rectangle};
+use crate::ends::{around, sorted};
 use std::ops::Range;
 
 /// The sides of what stands across the direction, or nearly, are so much off it at most.

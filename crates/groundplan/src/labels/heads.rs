@@ -4,7 +4,6 @@
 use super::Evidence;
 use super::beside::{Beside, placed};
 use super::corridors::{Strip, UNTOLD};
-use super::ends::{around, overlap, sorted};
 use super::family;
 use super::gates::crossing;
 use super::junctions;
@@ -14,6 +13,7 @@ use super::ragged;
 use super::sections::Columns;
 use super::through;
 use super::turned::Turned;
+use crate::ends::{around, overlap, sorted};
 use crate::grid::Frame;
 use crate::parameters::Parameters;
 use std::collections::{BTreeMap, BTreeSet};

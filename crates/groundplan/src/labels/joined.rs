@@ -3,8 +3,8 @@
 use super::barriers;
 use super::beside::{Beside, placed};
 use super::corridors::{ASKEW, Strip};
-use super::ends::{overlap, shared, sorted};
 use super::turned::Turned;
+use crate::ends::{overlap, shared, sorted};
 use crate::sets::Sets;
 
 /// Pieces share so much of the narrower one's width, which is so much of the wider one's, or where goods stand along one

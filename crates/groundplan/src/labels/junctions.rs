@@ -2,11 +2,11 @@
 
 use super::beside::placed;
 use super::corridors::{self, Strip};
-use super::ends::{overlap, shared, sorted, wider};
 use super::near::Near;
 use super::turned::{Turned, least_sine};
 use super::{JunctionKind, barriers};
 use crate::bands::flat_map_each;
+use crate::ends::{overlap, shared, sorted, wider};
 use crate::grid::{angle_between, turned};
 use crate::subdivision::distance;
 use std::collections::BTreeMap;

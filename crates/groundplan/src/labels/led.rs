@@ -3,8 +3,8 @@
 
 use super::beside::Beside;
 use super::corridors::{self, Strip};
-use super::ends::{around, overlap, wider};
 use super::turned::Turned;
+use crate::ends::{around, overlap, wider};
 
 /// A way opens into another when its end is so near to the other's side, metres.
 const MOUTH: f64 = 3.0;
@@ -33,7 +33,7 @@ pub fn sided_by(views: &[Turned], way: Strip, pieces: &[Strip], placed: &[Beside
     if !is_floor([way.along[0], piece.along[0]]) || !is_floor([piece.along[1], way.along[1]]) {
         return way;
     }
-    let along = [way.along[0].min(piece.along[0]), way.along[1].max(piece.along[1])];
+    let along = around(way.along.into_iter().chain(piece.along));
     Strip { along, across: piece.across, ..way }
 }
 

@@ -4,12 +4,12 @@
 
 use super::Evidence;
 use super::blocks;
-use super::ends::overlap;
 use super::frames::{AISLE, BACK, Frame, Legs, NEAR, frames};
 use super::grounds::on_map;
 use super::near::Near;
 use super::racks::Row;
 use super::uprights;
+use crate::ends::overlap;
 use crate::grid::State;
 use std::collections::BTreeMap;
 

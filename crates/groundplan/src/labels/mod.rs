@@ -8,7 +8,6 @@ mod blocks;
 mod columns;
 mod confidence;
 mod corridors;
-mod ends;
 mod family;
 mod frames;
 mod gates;

@@ -2,8 +2,8 @@
 //! mouths of ways that are known.
 
 use super::corridors::Strip;
-use super::ends::{sorted, wider};
 use super::turned::Turned;
+use crate::ends::{sorted, wider};
 use std::ops::Range;
 
 /// What ends so near to a line reaches it, metres.

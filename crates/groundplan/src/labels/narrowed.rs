@@ -3,9 +3,9 @@
 
 use super::beside::Beside;
 use super::corridors::Strip;
-use super::ends::{around, overlap, shared, wider};
 use super::racks::{DEPTH, Row, SAME};
 use super::turned::Turned;
+use crate::ends::{around, overlap, shared, wider};
 
 /// Racks leave no less of a way than this share of its width, or what they stand in is none along it.
 const LEFT: f64 = 0.5;

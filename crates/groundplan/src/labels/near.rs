@@ -1,5 +1,7 @@
 //! Things by their places, in square buckets, so that those near a point or in a polygon are found without asking all.
 
+use crate::ends::{around, wider};
+
 /// A little more than rounding may move a point, metres.
 const SLACK: f64 = 1e-3;
 /// There are about so many buckets for each thing, and not many more than so many in all.
@@ -115,8 +117,7 @@ impl Near {
 
     /// Calls `visit` with each bucket that a convex polygon reaches into, row by row.
     fn buckets(&self, polygon: &[[f64; 2]], mut visit: impl FnMut(u32)) {
-        let low = polygon.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min) - SLACK;
-        let high = polygon.iter().map(|p| p[1]).fold(f64::NEG_INFINITY, f64::max) + SLACK;
+        let [low, high] = wider(around(polygon.iter().map(|p| p[1])), SLACK);
         if low > high {
             return;
         }

@@ -3,10 +3,10 @@
 
 use super::barriers;
 use super::corridors::Strip;
-use super::ends::overlap;
 use super::racks::SAME;
 use super::stretches::beyond;
 use super::turned::Turned;
+use crate::ends::overlap;
 
 /// The two share so much of the narrower one's width.
 const SHARED: f64 = 0.7;

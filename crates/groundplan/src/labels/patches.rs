@@ -2,6 +2,7 @@
 
 use super::recall::Key;
 use crate::bands::{BAND_ROWS, map_bands};
+use crate::ends::{around, wider};
 use crate::grid::Grid;
 
 /// Pixels along the side of a patch.
@@ -68,8 +69,7 @@ impl Patches {
         let slope = if step[along] == 0.0 { 0.0 } else { step[across] / step[along] };
         let ends = lanes.map(|lane| [lane[along], lane[along] + count as f64 * step[along]]);
         let part = |ends: &[f64], axis: usize| {
-            let low = ends.iter().copied().fold(f64::INFINITY, f64::min) - BESIDE;
-            let high = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max) + BESIDE;
+            let [low, high] = wider(around(ends.iter().copied()), BESIDE);
             let place = |pixel: f64| ((pixel / SIDE as f64).floor() + 1.0).max(0.0) as usize;
             // Beyond the map there are no patches.
             place(low).saturating_sub(1)..place(high).min(self.size[axis])

@@ -3,6 +3,7 @@
 //! Each place is a phase on a circle of the pitch's circumference; the length of the phases' mean is 1 when all recur
 //! at that pitch and about 1 / sqrt(n) when they lie anyhow (Rayleigh).
 
+use crate::ends::around;
 use std::f64::consts::TAU;
 
 /// What recurs at half a pitch recurs at the whole one too if it does so as well as this: then the whole is the pitch.
@@ -38,8 +39,8 @@ pub fn find(places: &[f64], range: [f64; 2]) -> Option<Period> {
 /// The frequencies that rows of places tell apart, for pitches from the longest to the shortest.
 pub fn frequencies<'a>(rows: impl Iterator<Item = &'a [f64]>, [shortest, longest]: [f64; 2]) -> Option<Vec<f64>> {
     let extent = |places: &[f64]| {
-        let low = places.iter().copied().fold(f64::INFINITY, f64::min);
-        places.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
+        let [low, high] = around(places.iter().copied());
+        high - low
     };
     let extent = rows.filter(|places| places.len() >= 2).map(extent).fold(0.0, f64::max);
     let longest = longest.min(extent + MARGIN);

@@ -2,8 +2,8 @@
 //! leaves as future work.
 
 use super::Evidence;
-use super::ends::sorted;
 use super::turned::Turned;
+use crate::ends::sorted;
 use crate::gradients::SPECK;
 use crate::on_line::OnLine;
 

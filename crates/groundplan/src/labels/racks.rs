@@ -5,9 +5,9 @@
 
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
-use super::ends::{overlap, sorted, wider};
 use super::near::Near;
 use super::turned::{Turned, least_sine};
+use crate::ends::{overlap, sorted, wider};
 
 /// A piece of a row.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,13 +4,13 @@
 
 use super::beside::Beside;
 use super::corridors::{self, Strip};
-use super::ends::overlap;
 use super::onward;
 use super::stretches::{Candidate, Found, Held, beyond, depth, fewest_seen, ragged};
 use super::sums::What;
 use super::sweep::Sweep;
 use super::turned::Turned;
 use super::{Evidence, pieces};
+use crate::ends::overlap;
 
 /// Widths are tried in such steps, and places across in such shares of the width.
 const WIDER: f64 = 1.25;

@@ -4,7 +4,6 @@
 use super::beside::{Beside, placed};
 use super::blocks::Standing;
 use super::corridors::{self, ALONE, Strip};
-use super::ends::{overlap, shared};
 use super::gates;
 use super::heads;
 use super::joined;
@@ -22,6 +21,7 @@ use super::whole;
 use super::widths;
 use super::{Evidence, Ground};
 use crate::bands::{Later, Side, each, map_each};
+use crate::ends::{overlap, shared};
 
 /// A corridor that meets no other and is shorter than one alone is so long, metres, and so many others run beside it, no
 /// more than a rack away, that are as wide and as long but for this share.

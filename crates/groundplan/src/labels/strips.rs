@@ -2,7 +2,6 @@
 
 use super::bays;
 use super::corridors::Strip;
-use super::ends::wider;
 use super::junctions::Meeting;
 use super::names::{Named, names};
 use super::near::Near;
@@ -15,6 +14,7 @@ use super::sketch::{Plan, Sketch};
 use super::turned::Turned;
 use super::{Division, Evidence, JunctionKind, Label, outline};
 use crate::bands::side_by_side;
+use crate::ends::wider;
 use crate::grid::{State, tidy};
 use std::collections::BTreeSet;
 

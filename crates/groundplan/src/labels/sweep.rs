@@ -5,6 +5,7 @@ use super::summed::Summed;
 use super::sums::What;
 use super::turned::Turned;
 use crate::bands::map_each_in;
+use crate::ends::around;
 use std::cell::{Cell, OnceCell};
 
 /// So many rows of cells are gone over together.
@@ -45,8 +46,8 @@ impl Sweep<'_> {
         let made = map_each_in(groups.len(), threads, |room: &mut Summed, n| {
             let places = || groups[n].iter().map(|&place| self.places[place]);
             let ends = is_large.then(|| {
-                let low = places().fold(f64::INFINITY, f64::min) - self.around[0];
-                [low, places().fold(f64::NEG_INFINITY, f64::max) + self.around[1]]
+                let [low, high] = around(places());
+                [low - self.around[0], high + self.around[1]]
             });
             let near = Near { sweep: self, ends, room: Cell::new(std::mem::take(room)), laid_out: OnceCell::new() };
             let mut found = Vec::new();

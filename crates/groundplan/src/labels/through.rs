@@ -4,12 +4,12 @@
 //! free at one place is told by how much of all of them is free elsewhere.
 
 use super::corridors::Strip;
-use super::ends::{overlap, shared, sorted};
 use super::gates;
 use super::racks::Row;
 use super::sections::{Columns, WIDTH};
 use super::turned::Turned;
 use super::widths::Widths;
+use crate::ends::{overlap, shared, sorted};
 use std::collections::BTreeMap;
 
 /// A row and what stands in it.

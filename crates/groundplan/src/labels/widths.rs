@@ -2,10 +2,10 @@
 
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
-use super::ends::{overlap, wider};
 use super::gates::{crossing, leading_across};
 use super::racks::{self, Row};
 use super::turned::Turned;
+use crate::ends::{overlap, sorted, wider};
 
 /// Ways across a place are of one width but for this share.
 const ALIKE: f64 = 0.15;
@@ -84,7 +84,7 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
 fn is_at_wall(view: &Turned, strip: &Strip) -> bool {
     let columns = view.column(strip.along[0])..view.column(strip.along[1]) + 1;
     strip.across.into_iter().zip([-BEYOND, BEYOND]).any(|(side, beyond)| {
-        let ends = [side.min(side + beyond), side.max(side + beyond)];
+        let ends = sorted([side, side + beyond]);
         let taken = view.some_blocked(columns.clone(), ends[0], ends[1]);
         taken.iter().filter(|share| **share >= TAKEN).count() as f64 >= WALL * taken.len() as f64
     })

@@ -8,6 +8,7 @@ use super::raster::Raster;
 use super::runs::{Run, Runs, runs_of};
 use crate::bands::flat_map_each;
 use crate::bits::{WORD, lowest};
+use crate::ends::around;
 use crate::sets::Sets;
 use std::collections::BinaryHeap;
 
@@ -127,8 +128,7 @@ fn ends(raster: &Raster, bar: &Bar, pixels: &[usize]) -> [[f64; 2]; 2] {
         let [x, y] = raster.place(pixel);
         (x - bar.ends[0][0]) * ux + (y - bar.ends[0][1]) * uy
     };
-    let low = pixels.iter().map(along).fold(f64::INFINITY, f64::min);
-    let high = pixels.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
+    let [low, high] = around(pixels.iter().map(along));
     let length = bar.length();
     // The bar's ends are centres of free pixels: the jambs are half a pixel farther.
     let low = if low <= INTO_JAMBS { -0.5 } else { low };

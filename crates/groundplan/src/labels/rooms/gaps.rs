@@ -2,6 +2,7 @@
 
 use super::super::Evidence;
 use super::raster::Raster;
+use crate::ends::around;
 use crate::grid::angle_between;
 use crate::on_line::OnLine;
 use crate::subdivision::distance;
@@ -130,8 +131,7 @@ impl<'a> Line<'a> {
         let size = [self.raster.width as f64, self.raster.height as f64];
         let corners = [[0.0, 0.0], [size[0], 0.0], [0.0, size[1]], size];
         let along = corners.map(|c| (c[0] - self.origin[0]) * self.step[0] + (c[1] - self.origin[1]) * self.step[1]);
-        let low = along.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = along.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let [low, high] = around(along.into_iter());
         (low.floor() as i64, high.ceil() as i64 + 1)
     }
 
