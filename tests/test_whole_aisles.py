@@ -11,8 +11,10 @@ import pytest
 import shapely
 
 import groundplan
+from groundplan.maps import UNKNOWN
 
 RESOLUTION = 0.05
+ROOT = Path(__file__).parents[1]
 
 
 def shelves_across(reach: float) -> npt.NDArray[np.uint8]:
@@ -159,3 +161,31 @@ def test_a_way_that_goes_on_beside_itself_is_a_dead_end_at_its_own_ends_alone(by
         assert len(survey.of_kind("corridor")) == 2
         found = sorted(label["at"][0] for label in survey.of_kind("junction"))
         assert found == pytest.approx(ends, abs=0.4)
+
+
+@pytest.mark.parametrize(("hidden", "walled"), [((0.62, 0.93), False), ((0.06, 0.3), False), ((0.62, 0.93), True)])
+def test_an_aisle_between_two_racks_is_as_long_as_they_are_seen_or_not(
+    hidden: tuple[float, float], walled: bool
+) -> None:
+    map = groundplan.read(ROOT / "examples" / "warehouse.yaml")
+    (aisle,) = (label for label in groundplan.survey(map).of_kind("corridor") if label["name"] == "A03")
+    start, along = np.array(aisle["axis"][0]), np.subtract(*aisle["axis"][::-1])
+    row, column = np.mgrid[: map.height, : map.width]
+    places = np.stack([column + 0.5, map.height - row - 0.5]) * map.resolution
+    x, y = places + np.reshape(map.origin[:2], (2, 1, 1)) - start.reshape(2, 1, 1)
+    share = (x * along[0] + y * along[1]) / (along @ along)
+    aside = abs(y * along[0] - x * along[1]) / np.hypot(*along)
+    pixels = np.array(map.pixels)
+    unknown = int(np.flatnonzero((map.states == UNKNOWN) & (np.bincount(pixels.ravel(), minlength=256) > 0))[0])
+    pixels[(share > hidden[0]) & (share < hidden[1]) & (aside < aisle["width"] / 2 - 0.15)] = unknown
+    if walled:
+        pixels[(abs(share - 0.8) < 0.004) & (aside < aisle["width"] / 2)] = 0
+    found = groundplan.survey(groundplan.from_array(pixels, map.resolution, map.origin)).of_kind("corridor")
+    (whole,) = (label for label in found if label["name"] == "A03")
+    first, last = sorted(float((np.array(end) - start) @ along / (along @ along)) for end in whole["axis"])
+    assert first == pytest.approx(0, abs=0.02)
+    if walled:
+        assert last < hidden[0] + 0.02
+    else:
+        assert last == pytest.approx(1, abs=0.02)
+        assert whole["confidence"] < aisle["confidence"] - 0.1

@@ -366,6 +366,7 @@ pub fn strip(view: &Turned, other: &Turned, row: &Row, [from, to]: [f64; 2], mid
         score: row.across[1] - row.across[0],
         bays: false,
         is_ragged: false,
+        unseen: [false; 2],
         held: UNTOLD,
     }
 }

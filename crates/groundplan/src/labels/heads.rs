@@ -177,6 +177,7 @@ impl Heads<'_> {
             score: along[1] - along[0],
             bays: false,
             is_ragged: true,
+            unseen: [false; 2],
             held: UNTOLD,
         };
         let middles = [first, last].map(|aisle| self.other.place(self.view.to_map([wall, aisle.middle()]))[0]);

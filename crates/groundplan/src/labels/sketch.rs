@@ -4,6 +4,7 @@
 use super::beside::{Beside, placed};
 use super::blocks::Standing;
 use super::corridors::{self, ALONE, Strip};
+use super::faced;
 use super::gates;
 use super::heads;
 use super::joined;
@@ -167,6 +168,11 @@ impl Plan {
             plan = Self::new(views, more, threads);
         }
         plan.racks = plan.find_racks(views, on_legs, &standing, threads);
+        let faced = faced::whole(views, &plan.strips, &plan.racks);
+        if faced != plan.strips {
+            plan = Self::new(views, faced, threads);
+            plan.racks = plan.find_racks(views, on_legs, &standing, threads);
+        }
         let narrow = narrowed::past(views, &plan.strips, &plan.racks, &plan.reached(views), least);
         if narrow != plan.strips {
             plan = Self::new(views, narrow, threads);

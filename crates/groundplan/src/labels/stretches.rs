@@ -273,7 +273,16 @@ impl<'a> Candidate<'a> {
 
 /// A way whose sides are no lines.
 pub fn ragged(view: &Turned, along: [f64; 2], across: [f64; 2], score: f64) -> Strip {
-    Strip { direction: view.direction, along, across, score, bays: false, is_ragged: true, held: UNTOLD }
+    Strip {
+        direction: view.direction,
+        along,
+        across,
+        score,
+        bays: false,
+        is_ragged: true,
+        unseen: [false; 2],
+        held: UNTOLD,
+    }
 }
 
 /// In fewer columns nothing seen stands at a side of any way.
