@@ -1,12 +1,13 @@
 """Warehouses of another make than `groundplan.simulate`: bench/other_sites.py [FIRST [COUNT]] [--wide | --hard].
 
 What is tuned on simulated sites may fit the simulator. These are made by other rules (`_other_plan.py`,
-`_other_map.py`): racks solid, hollow, of legs with pallets between or of shelves, full or half empty, without guards at
-their ends; a wall beside the last cross aisle or the last block; maps drawn, scanned to three values or to greys, at 3
-to 10 cm. Every measure comes from the site's seed. COUNT sites (110) are made from the seeds FIRST (0) on, surveyed
-with default parameters and scored; the table has them by kind, and then those that score least. With ``--wide`` every
-measure comes from a wider range. With ``--hard`` they are of the harder kinds (`_other_hard.py`): several halls, a
-wing, staggered and ragged rows, bent maps, pallets on the floor, half seen sites. No bar, so no exit code.
+`_other_map.py`): racks solid, hollow, of legs with pallets between or of shelves, full or half empty, without guards
+at their ends; a wall beside the last cross aisle or the last block; maps drawn, scanned to three values or to greys,
+at 3 to 10 cm. Every measure comes from the site's seed. COUNT sites (110) are made from the seeds FIRST (0) on,
+surveyed with default parameters and scored; the table has them by kind, and then those that score least or have a
+direction off. With ``--wide`` every measure comes from a wider range. With ``--hard`` they are of the harder kinds
+(`_other_hard.py`): several halls, a wing, staggered and ragged rows, bent maps, pallets on the floor, half seen
+sites. No bar, so no exit code.
 """
 
 from __future__ import annotations
@@ -50,8 +51,8 @@ HARD_KINDS: dict[str, Callable[[Hard], Any]] = {
     "racks": lambda site: site.common.style,
     "metres a pixel": lambda site: site.common.resolution,
 }
-#: Sites whose junctions score less are listed.
-LOW = 0.9
+#: Sites whose junctions score less are listed, and those of which a direction is more degrees off.
+LOW, ASKEW = 0.9, 0.15
 
 Row = tuple[int, Any, list[float]]
 
@@ -95,7 +96,9 @@ def main() -> None:
             print(line(f"{name}: {value}", [row for row in rows if kind(row[1]) == value]))
     print(line("all", rows))
     low = sorted((row[2][4], row[0]) for row in rows if row[2][4] < LOW)
-    print(f"typed F1 under {LOW}: " + (", ".join(f"{typed:.2f} of seed {seed}" for typed, seed in low) or "none"))
+    askew = sorted(((row[2][0], row[0]) for row in rows if row[2][0] > ASKEW), reverse=True)
+    for what, which in ((f"typed F1 under {LOW}", low), (f"direction error over {ASKEW}", askew)):
+        print(f"{what}: " + (", ".join(f"{figure:.2f} of seed {seed}" for figure, seed in which) or "none"))
 
 
 if __name__ == "__main__":
