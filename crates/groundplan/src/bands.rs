@@ -9,10 +9,22 @@ use std::thread::{Scope, ScopedJoinHandle};
 pub const BAND_ROWS: usize = 64;
 /// Such as strips, or rows of racks.
 const SEVERAL: usize = 32;
+/// Pixels, or cells of a view, that are worth a thread's while: less takes as long as to start one.
+const WORTH: usize = 1 << 18;
 
-/// What `pass` makes of each band of `0..rows`, in the bands' order. Threads are started only when asked for.
-pub fn map_bands<T: Send>(rows: usize, threads: usize, pass: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
-    map_each(rows.div_ceil(BAND_ROWS), threads, |n| pass(band(n, rows)))
+/// What `pass` makes of each band of the rows of so many pixels by so many, in the bands' order. Threads are started only
+/// when asked for.
+pub fn map_bands<T: Send>(
+    [width, rows]: [usize; 2],
+    threads: usize,
+    pass: impl Fn(Range<usize>) -> T + Sync,
+) -> Vec<T> {
+    map_each(rows.div_ceil(BAND_ROWS), worth(width * rows, threads), |n| pass(band(n, rows)))
+}
+
+/// As many of the threads as so many pixels are worth.
+pub fn worth(pixels: usize, threads: usize) -> usize {
+    threads.min(pixels / WORTH).max(1)
 }
 
 /// What `make` makes of each of `0..count`, in their order; each is worth a thread's while.

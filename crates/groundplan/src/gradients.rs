@@ -99,9 +99,11 @@ pub fn find_gradients_in(
     for first in rows.clone().step_by(TOGETHER) {
         let some = first..rows.end.min(first + TOGETHER);
         let window = around(&some, grid.frame.height);
-        let edges = map_bands(window.len(), threads, |band| edge_pixels(grid, shifted(band, window.start), &across));
+        let edges = map_bands([across.len(), window.len()], threads, |band| {
+            edge_pixels(grid, shifted(band, window.start), &across)
+        });
         let edges = Edges { first: window.start, rows: edges.into_iter().flatten().collect() };
-        let parts = map_bands(some.len(), threads, |band| {
+        let parts = map_bands([columns.len(), some.len()], threads, |band| {
             let mut part = Gradients::default();
             let band = shifted(band, some.start);
             let bits = Bits::new(&edges, &band, &across, radius);

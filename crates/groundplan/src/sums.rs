@@ -121,7 +121,7 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads
     // Some bands at a time, each with the edges that cross it: few of all.
     for first in rows.clone().step_by(TOGETHER) {
         let some = first..rows.end.min(first + TOGETHER);
-        let parts = map_bands(some.len(), threads, |band| {
+        let parts = map_bands([width, some.len()], threads, |band| {
             let band = band.start + some.start..band.end + some.start;
             let mut left: Vec<Packed> = vec![0; width / WORD + 1];
             let Crossings { mut walks, edges } = Crossings::new(arrangement, width, &band);

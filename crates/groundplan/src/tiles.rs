@@ -27,7 +27,7 @@ impl Tiles {
     pub fn new(grid: &Grid, threads: usize) -> Self {
         let (width, height) = (grid.frame.width.div_ceil(SIDE), grid.frame.height.div_ceil(SIDE));
         let bits = grid.table.states.map(bit);
-        let states = map_bands(grid.frame.height, threads, |band| {
+        let states = map_bands([grid.frame.width, grid.frame.height], threads, |band| {
             let mut states = vec![0u8; band.len().div_ceil(SIDE) * width];
             // The last eight pixels that were looked at in each tile: mostly the next are the same.
             let mut last = vec![0u64; width];

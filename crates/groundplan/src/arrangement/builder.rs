@@ -265,7 +265,7 @@ impl Builder {
                 first = last;
             }
         }
-        each(parts, threads, |(f, members, vertices, rows)| {
+        each(parts, threads.min(crossings / SHARE + 1), |(f, members, vertices, rows)| {
             let mut places = vertices.iter_mut().zip(rows);
             for &n in &families[f].members[members] {
                 for (g, other) in families.iter().enumerate().skip(f + 1) {

@@ -38,7 +38,7 @@ impl Patches {
     pub fn new(grid: &Grid, threads: usize) -> Self {
         let across = grid.frame.width.div_ceil(SIDE);
         let meanings = Key::default().bytes(&grid.table.states.map(|state| state as u8));
-        let keys = map_bands(grid.frame.height, threads, |band| {
+        let keys = map_bands([grid.frame.width, grid.frame.height], threads, |band| {
             let mut keys = vec![meanings; across];
             for row in band.map(|y| grid.row(y)) {
                 keys.iter_mut().zip(row.chunks(SIDE)).for_each(|(key, pixels)| *key = key.bytes(pixels));

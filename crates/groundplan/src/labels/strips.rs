@@ -83,11 +83,14 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
     };
     let grounds: Vec<_> = rows.iter().map(rack).collect();
     let [racks, rooms, pillars] = side_by_side(evidence.threads, |side| {
-        let squares = &squares;
-        let racks = side.start(move || rack_labels(evidence, division, &views, &rows, squares));
-        let pillars = side.start(|| pillar_labels(evidence, &space.raster, &grounds, squares));
-        let rooms = rooms::find(evidence, division, &space, bars, first, &racked, &corridors, squares);
-        [racks.get(), rooms, pillars.get()]
+        let (space, grounds, squares) = (&space, &grounds, &squares);
+        let others = side.start(move || {
+            let racks = rack_labels(evidence, division, &views, &rows, squares);
+            [racks, pillar_labels(evidence, &space.raster, grounds, squares)]
+        });
+        let rooms = rooms::find(evidence, division, space, bars, first, &racked, &corridors, squares);
+        let [racks, pillars] = others.get();
+        [racks, rooms, pillars]
     });
     labels.extend(racks.into_iter().chain(rooms).chain(pillars));
     labels

@@ -7,7 +7,7 @@
 use super::recall::{Key, Recall};
 use super::squares::{self, Band, SquaredRows};
 use super::summed::{Part, Summed, SummedRows};
-use crate::bands::map_bands;
+use crate::bands::{map_bands, worth};
 use crate::bits::Bits;
 use std::ops::Range;
 use std::sync::Arc;
@@ -87,7 +87,7 @@ impl Cells {
     {
         let keyed = recall.keeps();
         if width * height > MANY || height > usize::from(u16::MAX) / SAMPLES {
-            let made = map_bands(height, threads, |band| {
+            let made = map_bands([width, height], threads, |band| {
                 recall.views.or_find(
                     || key(band.clone()),
                     || {
@@ -109,7 +109,9 @@ impl Cells {
             Summed::new(part, samples, keyed, |n, row| make(n, columns.start, row))
         };
         // Without threads one band, which nothing need be put to.
-        let parts = if threads <= 1 { vec![summed(0..rows.len())] } else { map_bands(rows.len(), threads, summed) };
+        let size = [columns.len(), rows.len()];
+        let is_one = worth(size[0] * size[1], threads) == 1;
+        let parts = if is_one { vec![summed(0..rows.len())] } else { map_bands(size, threads, summed) };
         let mut parts = parts.into_iter();
         let mut all = parts.next().unwrap_or_default();
         parts.for_each(|part| all.extend(part));

@@ -4,7 +4,7 @@
 use super::summed::Summed;
 use super::sums::What;
 use super::turned::Turned;
-use crate::bands::map_each_in;
+use crate::bands::{map_each_in, worth};
 use crate::ends::around;
 use std::cell::{Cell, OnceCell};
 
@@ -43,6 +43,7 @@ impl Sweep<'_> {
         } else {
             order.chunks((columns / view.size[0]).max(1)).collect()
         };
+        let threads = worth(view.size[0] * view.size[1], threads);
         let made = map_each_in(groups.len(), threads, |room: &mut Summed, n| {
             let places = || groups[n].iter().map(|&place| self.places[place]);
             let ends = is_large.then(|| {

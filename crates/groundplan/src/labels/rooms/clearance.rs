@@ -4,7 +4,7 @@
 use super::super::recall::{Key, Recall};
 use super::raster::Raster;
 use super::runs::{Run, Runs};
-use crate::bands::{each, map_each};
+use crate::bands::{each, map_each, worth};
 use crate::bits::{WORD, lowest};
 use std::ops::Range;
 
@@ -111,6 +111,7 @@ fn distances(squared: &[u32]) -> f64 {
 /// Those of a whole raster, whose border is not free.
 fn whole(raster: &Raster, threads: usize) -> Rows {
     let (width, height, columns) = (raster.width, raster.height, 0..raster.width);
+    let threads = worth(raster.len(), threads);
     // Without threads one band, for what bears on a band from beyond takes a pass of its own.
     let band = if threads <= 1 { height } else { height.div_ceil(4 * threads).max(ROWS) };
     let bands: Vec<Range<usize>> = (0..height).step_by(band).map(|y| y..(y + band).min(height)).collect();

@@ -40,7 +40,7 @@ impl Raster {
         if w == 0 || h == 0 {
             return None;
         }
-        let parts = map_bands(h, threads, |band| Part::new(grid, side, w, band));
+        let parts = map_bands([w * side * side, h], threads, |band| Part::new(grid, side, w, band));
         let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
         for part in parts.iter().filter(|part| part.rows[0] <= part.rows[1]) {
             low = [low[0].min(part.columns[0]), low[1].min(part.rows[0])];

@@ -7,7 +7,7 @@ use super::fill::fill_runs;
 use super::raster::Raster;
 use super::runs::{Run, Runs};
 use super::{Racked, Space, Width};
-use crate::bands::map_each;
+use crate::bands::flat_map_each;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
@@ -157,7 +157,8 @@ pub fn find(
     }
     let counts: Vec<usize> = std::iter::once(0).chain(regions.iter().map(|region| region.pixels)).collect();
     let pixels = samples(&numbers, |n| numbers.all[n].number, &counts, SAMPLES);
-    let places = map_each(regions.len(), evidence.threads, |n| middle(evidence, raster, &pixels[n + 1], squares));
+    let places =
+        flat_map_each(regions.len(), evidence.threads, |n| [middle(evidence, raster, &pixels[n + 1], squares)]);
     regions.iter_mut().zip(places).for_each(|(region, place)| region.place = place);
     sort_by_rows(&mut regions);
     (regions, numbers)
