@@ -118,10 +118,7 @@ impl Candidate {
     /// The same of a weak one: what lines up along strong ones and square to them tells nothing, of the rest one may.
     fn exceeds_chance_beside(&self, strong: &[Candidate]) -> bool {
         let near = ALIGNED_DEG.to_radians();
-        let is_known = |turn: f64| {
-            let beside = |f: &Candidate| angle_between(f.angle, self.angle + turn.to_radians());
-            strong.iter().map(beside).any(|by| by <= near || FRAC_PI_2 - by <= near)
-        };
+        let is_known = |turn: f64| strong.iter().any(|f| is_of(f, self.angle + turn.to_radians(), near));
         CONTROLS_DEG.iter().zip(self.quiet).filter(|&(turn, quiet)| !quiet && !is_known(*turn)).count() <= 1
     }
 }
@@ -147,12 +144,9 @@ fn seconds(weak: &[Candidate], strong: &[Candidate]) -> Vec<Candidate> {
 /// is so near to a strong one that its pixels speak for that one too is a part of its hall that the map has turned.
 fn wings(weak: &[Candidate], strong: &[Candidate], strongest: f64, parameters: &Parameters) -> Vec<Candidate> {
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
-    let is_beside = |f: &Candidate, to: &Candidate| {
-        let by = angle_between(f.angle, to.angle);
-        by.min(FRAC_PI_2 - by) <= tolerance
-    };
     let may_be = |f: &&Candidate| {
-        f.metres >= WING.1 * strongest && f.exceeds_chance_beside(strong) && !strong.iter().any(|to| is_beside(f, to))
+        let is_known = strong.iter().any(|to| is_of(to, f.angle, tolerance));
+        f.metres >= WING.1 * strongest && f.exceeds_chance_beside(strong) && !is_known
     };
     let own: Vec<Candidate> = weak.iter().filter(may_be).copied().collect();
     own.iter().filter(|f| own.iter().any(|other| is_square(other.angle, f, WING.0))).copied().collect()
@@ -161,6 +155,12 @@ fn wings(weak: &[Candidate], strong: &[Candidate], strongest: f64, parameters: &
 /// Those that have no other square to them.
 fn alone(strong: &[Candidate]) -> impl Iterator<Item = &Candidate> {
     strong.iter().filter(|f| !strong.iter().any(|other| is_square(other.angle, f, SQUARE.0)))
+}
+
+/// True when an angle is within so much of a direction, or of what is square to it.
+fn is_of(direction: &Candidate, angle: f64, within: f64) -> bool {
+    let by = angle_between(direction.angle, angle);
+    by <= within || FRAC_PI_2 - by <= within
 }
 
 fn is_square(angle: f64, to: &Candidate, within_deg: f64) -> bool {
@@ -204,7 +204,7 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
         // What may be a wing's has another square to it.
         let is_other = |f: &Candidate| is_square(start, f, ALIGNED_DEG) && f.metres >= WING.1 * strongest;
         let has_other =
-            found.iter().any(is_other) || most(frame, rest, start + FRAC_PI_2, ALIGNED_DEG) >= WING.1 * strongest;
+            || found.iter().any(is_other) || most(frame, rest, start + FRAC_PI_2, ALIGNED_DEG) >= WING.1 * strongest;
         let [useful, perhaps] = [&found[..], &[]].map(|found| least(found, strongest, start, has_other, parameters));
         let most = most(frame, rest, start, ALIGNED_DEG + SCAN_DEG);
         if most < useful {
@@ -240,8 +240,15 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
     found
 }
 
-/// Beside those that were found, what is less than so many metres about an angle is of no use; square to it may be another.
-fn least(found: &[Candidate], strongest: f64, angle: f64, has_other: bool, parameters: &Parameters) -> f64 {
+/// Beside those that were found, what is less than so many metres about an angle is of no use. Whether another may be square
+/// to it is asked where it counts.
+fn least(
+    found: &[Candidate],
+    strongest: f64,
+    angle: f64,
+    has_other: impl Fn() -> bool,
+    parameters: &Parameters,
+) -> f64 {
     let weight = parameters.directions_min_weight;
     if parameters.directions_count.is_some() {
         return 0.0;
@@ -253,7 +260,7 @@ fn least(found: &[Candidate], strongest: f64, angle: f64, has_other: bool, param
     }
     // Of the weak ones only what is square to one that has no other is taken, and a wing's.
     let near = |f: &&Candidate| is_square(angle, f, ALIGNED_DEG);
-    let share = if has_other { weight.min(WING.1) } else { weight };
+    let share = if has_other() { weight.min(WING.1) } else { weight };
     alone(&strong).filter(near).map(|f| SQUARE.1 * f.metres).fold(share * strongest, f64::min)
 }
 

@@ -4,9 +4,9 @@ use crate::projection::{Points, Sum};
 use std::borrow::Cow;
 
 /// How sharp the projection of some pixels is: the sum of the squares of its smoothed bins, or of a lower power. It is
-/// greatest where walls fall on single bins. The bins are finer than a pixel and smoothed over more than one, so that it does not matter
-/// where between the bins a wall falls: else an angle slightly off, at which the walls happen to fall upon bins, would
-/// look sharper than the right one.
+/// greatest where walls fall on single bins. The bins are finer than a pixel and smoothed over one or more, so that it
+/// does not matter where between the bins a wall falls: else an angle slightly off, at which the walls happen to fall
+/// upon bins, would look sharper than the right one.
 struct Sharpness<'a> {
     points: &'a Points,
     narrow: bool,

@@ -90,9 +90,9 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     // What recurs does so twice as far off too.
     let found: Vec<(f64, f64)> = (first..=last)
         .map(|lag| {
-            let (once, twice) = (excess(&sums, 1, lag), excess(&sums, 2, lag));
-            let is_along =
-                excess(&faces, 1, lag).0 >= ALONG[0] * once.0 && excess(&faces, 2, lag).0 >= ALONG[1] * twice.0;
+            let all = [1, 2].map(|times| excess(&sums, times, lag));
+            let is_along = (0..2).all(|n| excess(&faces, n + 1, lag).0 >= ALONG[n] * all[n].0);
+            let [once, twice] = all;
             (once.0, if is_along { once.1.min(twice.1) } else { 0.0 })
         })
         .collect();
@@ -100,13 +100,18 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     let tops: Vec<usize> = (0..found.len()).filter(|&n| found[n].1 >= CONTRAST && top(n)).collect();
     let most = tops.iter().map(|&n| found[n].0).fold(0.0, f64::max);
     let pitch = first + tops.into_iter().find(|&n| found[n].0 >= FUNDAMENTAL * most)?;
-    // Between the steps it is where the pairs lie in the middle; in parts of a step, so that what changes in a corner of a map
-    // as a rule changes no bay elsewhere.
-    let pairs = || (pitch - TOP..=pitch + TOP).map(|lag| (lag as f64, sums[lag]));
-    let chance = pairs().map(|(_, count)| count).fold(f64::INFINITY, f64::min);
-    let weight: f64 = pairs().map(|(_, count)| count - chance).sum();
-    let middle = pairs().map(|(lag, count)| lag * (count - chance)).sum::<f64>() / weight.max(1.0);
-    Some(if weight >= 1.0 { (middle * PARTS).round() / PARTS } else { pitch as f64 } * STEP)
+    Some(between_steps(&sums, pitch) * STEP)
+}
+
+/// Where the pairs about a lag lie in the middle, in steps; in parts of a step, so that what changes in a corner of a map
+/// as a rule changes no bay elsewhere.
+fn between_steps(sums: &[f64], lag: usize) -> f64 {
+    let around = &sums[lag - TOP..=lag + TOP];
+    let chance = around.iter().copied().fold(f64::INFINITY, f64::min);
+    let weight: f64 = around.iter().map(|count| count - chance).sum();
+    let first = (lag - TOP) as f64;
+    let middle = around.iter().enumerate().map(|(n, count)| (first + n as f64) * (count - chance)).sum::<f64>();
+    if weight >= 1.0 { (middle / weight * PARTS).round() / PARTS } else { lag as f64 }
 }
 
 /// Places of all specks along and across the view's direction, metres.
