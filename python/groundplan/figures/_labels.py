@@ -130,7 +130,8 @@ def draw_corridors(axes: Axes, corridors: Sequence[Label], junctions: Sequence[L
     """Translucent polygons with their centre lines, and corners: the corridors that end there end in their middle."""
     unsure = [corridor for corridor in corridors if is_pale(corridor)]
     sure = [corridor for corridor in corridors if not is_pale(corridor)]
-    corners = [label for label in junctions if not any(is_pale(labels[n]) for n in label.get("corridors", ()))]
+    pale = {n for n, label in enumerate(labels) if is_pale(label)}
+    corners = [label for label in junctions if pale.isdisjoint(label.get("corridors", ()))]
     _draw_ways(axes, unsure, unsure, 0.08, 0.45)
     _draw_ways(axes, sure, [*sure, *corners], 0.24, 0.95)
 

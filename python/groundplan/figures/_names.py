@@ -70,7 +70,8 @@ def on_axes(axes: Axes) -> Put:
         axes.text(
             at[0],
             at[1],
-            text,
+            # Half a letter has no shape.
+            text.encode(errors="replace").decode(),
             size=size,
             color=colour,
             ha="center",
