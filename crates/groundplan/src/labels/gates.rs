@@ -51,8 +51,12 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
             found.push(strip(view, other, row, way, *middles));
         }
     }
+    let through = Through::new(seen, views.len());
+    for (gate, is_as_bays) in through.at_walls(strips) {
+        if is_as_bays { &mut doubtful } else { &mut gates }.push(gate);
+    }
     let mut sure = Widths::of(views, strips.iter().filter(|strip| !strip.bays).chain(&gates));
-    let through = Through::new(seen, views.len()).find(&mut sure);
+    let through = through.find(&mut sure);
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
     doubtful.retain(|gate| sure[gate.direction].is_empty() || sure[gate.direction].have(gate.width(), None));
     gates.extend(doubtful);

@@ -21,9 +21,9 @@ const WHOLE: f64 = 0.1;
 /// What stands so near to a way's side stands at it, metres.
 const SIDE: f64 = 0.35;
 /// A column of which this share is not free is of what closes a row.
-const TAKEN: f64 = 0.5;
+pub const TAKEN: f64 = 0.5;
 /// No more than this share of a column is not free where nothing closes a row.
-const LEFT: f64 = 0.25;
+pub const LEFT: f64 = 0.25;
 /// A way is free but for this share, metre for metre: one walks round what was left in it.
 const CLUTTER: f64 = 0.2;
 /// A way between posts, and not between frames, is free but for this share of its columns.
@@ -105,6 +105,22 @@ impl<'a> Columns<'a> {
             .filter(|&(from, to)| self.is_way(from, to))
             .map(|(from, to)| [self.place(from), self.place(to)])
             .collect()
+    }
+
+    /// The way between one of its ends, at which there is a wall, and what of the row stands nearest to that, if this is
+    /// closed there; it is no wider than so many metres.
+    pub fn way_at_end(&self, side: usize, widest: f64) -> Option<[f64; 2]> {
+        let count = self.blocked.len();
+        let open: Vec<bool> = (0..count).map(|n| !self.stops(n)).collect();
+        let sections = runs(&open, true);
+        let &(from, to) = if side == 0 { sections.first()? } else { sections.last()? };
+        let (off, upright) = if side == 0 { (from, to) } else { (count - to, from) };
+        let ends = [self.place(from), self.place(to)];
+        let is_way = off as f64 * self.view.cell <= SIDE
+            && (1..count).contains(&upright)
+            && (WIDTH.0..=widest).contains(&(ends[1] - ends[0]))
+            && self.share(from, to) <= CLUTTER;
+        (is_way && self.is_closed(self.place(upright))).then_some(ends)
     }
 
     /// The stretches in which nothing closes the row, from where to where along its middle, in order.

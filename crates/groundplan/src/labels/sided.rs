@@ -1,7 +1,13 @@
-//! Ways between sides: where one leads nowhere, what stands along it alone tells it from what is free of a room.
+//! Ways between sides: where one leads nowhere, what stands along it alone tells it from what is free of a room, or a row
+//! between it and another.
 
+use super::beside::Beside;
 use super::corridors::Strip;
+use super::racks::{self, DEPTH};
+use super::runs::{close, runs};
+use super::sections::{self, WIDTH};
 use super::turned::Turned;
+use crate::ends::{overlap, shared, wider};
 
 /// Over so much of a way's length something stands at a side.
 const SIDED: f64 = 0.6;
@@ -17,4 +23,41 @@ pub fn is_sided(view: &Turned, strip: &Strip) -> bool {
         let held = view.blocked_where(columns.clone(), low, high, |share| share > 0.0);
         held.count(0..columns.len()) as f64 >= SIDED * columns.len() as f64
     })
+}
+
+/// Things are parted by more than so many metres.
+const PARTED: f64 = 0.3;
+/// Ways are alike but for this share of their widths, and one that goods hide in part runs beside the other for as much of
+/// the shorter.
+const ALIKE: f64 = 0.2;
+
+/// True when another that is like it runs beside a strip, with a row between them of which several pieces stand, and ways
+/// lead between these from the one to the other: be there walls at all ends, rooms are not so. Of all it is known where they
+/// lie.
+pub fn is_at_row(view: &Turned, strips: &[Strip], placed: &[Beside], n: usize) -> bool {
+    let own = &strips[n];
+    let is_like = |other: &&Strip| {
+        let (one, two) = (own.width(), other.width());
+        (one - two).abs() <= ALIKE * one.max(two)
+            && overlap(own.along, other.along) >= (1.0 - ALIKE) * own.length().min(other.length())
+    };
+    let near = placed[own.direction].touching(own.along, wider(own.across, DEPTH.1));
+    near.into_iter().map(|m| &strips[m]).filter(is_like).any(|other| {
+        let [below, above] = if own.middle() < other.middle() { [own, other] } else { [other, own] };
+        let faces = [below.across[1], above.across[0]];
+        (DEPTH.0..=DEPTH.1).contains(&(faces[1] - faces[0])) && is_row(view, shared(own.along, other.along), faces)
+    })
+}
+
+/// True when several things stand in line between two faces, and between two of them a way leads through.
+fn is_row(view: &Turned, along: [f64; 2], [low, high]: [f64; 2]) -> bool {
+    let cells = |metres: f64| (metres / view.cell) as usize;
+    let blocked = view.some_blocked(view.column(along[0])..view.column(along[1]), low, high);
+    let mut taken: Vec<bool> = blocked.iter().map(|share| *share >= sections::TAKEN).collect();
+    close(&mut taken, cells(PARTED));
+    let mut stand = runs(&taken, true);
+    stand.retain(|(from, to)| to - from >= cells(racks::SHORTEST));
+    let free: Vec<bool> = blocked.iter().map(|share| *share <= sections::LEFT).collect();
+    let is_way = |from: usize, to: usize| runs(&free[from..to], true).iter().any(|(a, b)| b - a >= cells(WIDTH.0));
+    stand.windows(2).any(|pair| is_way(pair[0].1, pair[1].0))
 }

@@ -245,20 +245,30 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<S
                 !goes_on(n, one.max(two).min(one + two + reach(&meetings[m], n)), NICHE)
                     && !goes_on(n, one + two, NICHES)
             };
-            let is_one_of = |widths: f64, apart: (f64, f64)| {
-                strips[n].length() >= RECURS.max(widths * strips[n].width()) && recurs(&strips, &placed, n, apart)
+            let is_long = |widths: f64| strips[n].length() >= RECURS.max(widths * strips[n].width());
+            let is_one_of_many = |apart: (f64, f64)| alike(&strips, &placed, n, apart, |_| true) >= OTHERS;
+            let is_one_of = |widths: f64, apart: (f64, f64)| is_long(widths) && is_one_of_many(apart);
+            // Beside a rack two do that open into the same way.
+            let is_one_of_two = |m: usize| {
+                let is_met = |way: &usize| *way != n && meetings[m].corridors.contains(way);
+                let opens_there = |other: usize| {
+                    other == n
+                        || met[other].iter().any(|&at| meetings[at].corridors.iter().any(|c| *c != other && is_met(c)))
+                };
+                is_long(NICHE.0) && alike(&strips, &placed, n, racks::DEPTH, opens_there) > 0
             };
             let is_aisle = || is_one_of(ALONE.0, (0.0, racks::DEPTH.1)) || is_one_of(NICHE.0, racks::DEPTH);
             match met[n].len() {
                 0 | 1 if racks::is_within_row(&strips, &placed, n) => false,
                 0 if is_shut(n) => {
-                    let is_one_of_many = || recurs(&strips, &placed, n, (0.0, racks::DEPTH.1));
+                    let is_one_of_many = || is_one_of_many((0.0, racks::DEPTH.1));
                     let is_sided = || sided::is_sided(&views[strips[n].direction], &strips[n]);
-                    strips[n].length() >= SHUT * strips[n].width() && (is_one_of_many() || is_sided())
+                    let is_at_row = || sided::is_at_row(&views[strips[n].direction], &strips, &placed, n);
+                    strips[n].length() >= SHUT * strips[n].width() && (is_one_of_many() || is_sided() || is_at_row())
                 }
                 0 if strips[n].length() >= ALONE.1.max(ALONE.0 * strips[n].width()) => true,
                 0 => is_aisle(),
-                1 => !met[n].iter().any(is_niche) || is_aisle(),
+                1 => !met[n].iter().any(is_niche) || is_aisle() || is_one_of_two(met[n][0]),
                 _ => true,
             }
         };
@@ -296,24 +306,28 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<S
     }
 }
 
-/// True when others that are alike run beside a strip, one after another, so far apart, metres.
-fn recurs(strips: &[Strip], placed: &[Beside], n: usize, apart: (f64, f64)) -> bool {
+/// How many others that are alike run beside a strip, one after another, so far apart, metres, of those that count and of no
+/// more than [`OTHERS`] on a side.
+fn alike(strips: &[Strip], placed: &[Beside], n: usize, apart: (f64, f64), counts: impl Fn(usize) -> bool) -> usize {
     let own = &strips[n];
     let alike = |one: f64, two: f64| (one - two).abs() <= ALIKE * one.max(two);
+    // Goods hide more of one aisle beside a rack than of the next.
+    let whole = if apart.0 > 0.0 { f64::min } else { f64::max };
     let is_like = |other: &&Strip| {
         other.direction == own.direction
             && alike(own.width(), other.width())
-            && overlap(own.along, other.along) >= (1.0 - ALIKE) * own.length().max(other.length())
+            && overlap(own.along, other.along) >= (1.0 - ALIKE) * whole(own.length(), other.length())
     };
     let reach = OTHERS as f64 * (own.width() + apart.1);
     let around = placed[own.direction].touching(own.along, [own.middle() - reach, own.middle() + reach]);
-    let mut sides: Vec<[f64; 2]> = around.iter().map(|&m| &strips[m]).filter(is_like).map(|s| s.across).collect();
+    let mut sides: Vec<[f64; 2]> =
+        around.into_iter().filter(|&m| counts(m)).map(|m| &strips[m]).filter(is_like).map(|s| s.across).collect();
     sides.sort_by(|one, two| (one[0] + one[1]).total_cmp(&(two[0] + two[1])));
     let at = sides.partition_point(|side| side[0] + side[1] < own.across[0] + own.across[1]);
     let is_next = |pair: &&[[f64; 2]]| (apart.0..=apart.1).contains(&(pair[1][0] - pair[0][1]));
     let above = sides[at..].windows(2).take_while(is_next).count();
     let below = sides[..(at + 1).min(sides.len())].windows(2).rev().take_while(is_next).count();
-    above + below >= OTHERS
+    above + below
 }
 
 /// Half of a strip's piece within a junction, metres along the strip.

@@ -5,11 +5,11 @@
 
 use super::corridors::Strip;
 use super::gates;
-use super::racks::Row;
+use super::racks::{DEPTH, Row};
 use super::sections::{Columns, WIDTH};
 use super::turned::Turned;
 use super::widths::Widths;
-use crate::ends::{overlap, shared, sorted};
+use crate::ends::{overlap, shared, sorted, wider};
 use std::collections::BTreeMap;
 
 /// A row and what stands in it.
@@ -52,6 +52,11 @@ const LIKELY: f64 = 0.3;
 /// Between the ends of rows and a wall is a way up to so many metres and times as wide as those along the rows, and from
 /// there on open floor.
 const AT_WALL: (f64, f64) = (6.0, 3.5);
+/// A row goes on up to a wall that is so near to its end, metres.
+const NEAR: f64 = 0.3;
+/// What stands so near to a corridor's side, metres, over so much of a place bounds that.
+const BESIDE: f64 = 0.3;
+const BOUNDED: f64 = 0.8;
 /// Widths are counted in such steps, metres.
 const STEP: f64 = 0.1;
 /// What crosses all rows of a place is a way when it is as wide as other ways and less likely than this by chance; when
@@ -128,6 +133,18 @@ impl<'a> Through<'a> {
                 common.chance = self.chance(&common.rows, common.ends);
             }
         }
+    }
+
+    /// The ways between the last of a row and a wall that ends it and the corridors beside it, and whether each is as wide as
+    /// bays: of those beside which no other corridor runs, for more rows tell by one another what is a way.
+    pub fn at_walls(&self, strips: &[Strip]) -> Vec<(Strip, bool)> {
+        let at_wall = |seen: &Seen, side: usize| {
+            let ends = seen.columns.way_at_end(side, widest_at_wall(seen.beside))?;
+            let [view, other] = seen.views;
+            let is_way = seen.is_at_wall(strips, side) && seen.is_bounded(strips, ends) && seen.is_alone(strips);
+            is_way.then(|| (gates::strip(view, other, seen.row, ends, seen.middles), seen.columns.is_as_bays(ends)))
+        };
+        self.rows.iter().flat_map(|seen| [0, 1].map(|side| at_wall(seen, side))).flatten().collect()
     }
 
     /// What of a stretch that is open in some rows goes on through the next ones.
@@ -255,6 +272,41 @@ impl Seen<'_> {
     /// True when what lies there across the crossing direction crosses it.
     fn holds(&self, across: f64) -> bool {
         (self.row.along[0]..=self.row.along[1]).contains(&self.along(across))
+    }
+
+    /// True when a wall ends the row and the two corridors beside it.
+    fn is_at_wall(&self, strips: &[Strip], side: usize) -> bool {
+        let (view, end) = (self.views[0], self.row.along[side]);
+        let beyond = if side == 0 { [end - NEAR, end] } else { [end, end + NEAR] };
+        let [below, above] = self.between.map(|n| strips[n].across);
+        view.some_closed(view.column(beyond[0])..view.column(beyond[1]) + 1, below[0], above[1]).any()
+    }
+
+    /// True when no third corridor runs beside the two, no further off than a row is deep.
+    fn is_alone(&self, strips: &[Strip]) -> bool {
+        let [below, above] = self.between;
+        let beside = wider([strips[below].across[0], strips[above].across[1]], DEPTH.1);
+        let is_third = |(n, strip): (usize, &Strip)| {
+            !self.between.contains(&n)
+                && strip.direction == self.row.direction
+                && overlap(strip.along, self.row.along) > 0.0
+                && overlap(strip.across, beside) > 0.0
+        };
+        !strips.iter().enumerate().any(is_third)
+    }
+
+    /// True when one of the two corridors leads to a place beyond the row, or a wall goes on along its far side: else that
+    /// is open floor.
+    fn is_bounded(&self, strips: &[Strip], ends: [f64; 2]) -> bool {
+        let (view, middle) = (self.views[0], f64::midpoint(ends[0], ends[1]));
+        let columns = view.column(ends[0])..view.column(ends[1]);
+        let is_held = |v: f64| {
+            let held = view.blocked_where(columns.clone(), v - BESIDE, v + BESIDE, |share| share > 0.0);
+            held.count(0..columns.len()) as f64 >= BOUNDED * columns.len() as f64
+        };
+        let leads = |n: usize| (strips[n].along[0]..=strips[n].along[1]).contains(&middle);
+        let [below, above] = self.between;
+        [below, above].into_iter().any(leads) || is_held(strips[below].across[0]) || is_held(strips[above].across[1])
     }
 
     /// A way through it.

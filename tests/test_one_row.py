@@ -1,0 +1,67 @@
+"""Ways around one row of racks, beside which no other tells what is a way, in closed halls that no simulator made."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import groundplan
+
+Picture = npt.NDArray[np.uint8]
+Boxes = list[tuple[float, float, float, float]]  # from x, from y, to x, to y
+
+RESOLUTION = 0.05
+
+
+def hall(width: float, depth: float, racks: Boxes) -> Picture:
+    """A closed hall, metres, with what stands in it; the unknown around."""
+    picture = np.full((round(depth / RESOLUTION) + 40, round(width / RESOLUTION) + 40), 205, np.uint8)
+
+    def fill(box: tuple[float, float, float, float], grey: int) -> None:
+        left, low, right, high = (round(metres / RESOLUTION) + 20 for metres in box)
+        picture[low:high, left:right] = grey
+
+    fill((-0.1, -0.1, width + 0.1, depth + 0.1), 0)
+    fill((0, 0, width, depth), 254)
+    for box in racks:
+        fill(box, 0)
+    return picture
+
+
+def labels(picture: Picture, kind: str, key: str) -> list[object]:
+    """One value of all labels of a kind, sorted."""
+    return sorted(label[key] for label in groundplan.survey(picture, resolution=RESOLUTION).of_kind(kind))
+
+
+def in_line(count: int) -> Boxes:
+    """Racks of 4 m by 1 m in line, 4 m apart and from the walls, in a hall 6 m deep."""
+    return [(4 + 8 * n, 2.5, 8 + 8 * n, 3.5) for n in range(count)]
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_ways_lead_around_and_between_racks_in_line_along_the_middle_of_a_hall(count: int) -> None:
+    picture = hall(8 * count + 4, 6, in_line(count))
+    assert labels(picture, "junction", "type") == ["L"] * 4 + ["T"] * 2 * (count - 1)
+    assert labels(picture, "corridor", "width") == pytest.approx([2.5] * 2 + [4.0] * (count + 1), abs=0.25)
+
+
+def test_around_a_single_thing_in_a_room_is_no_way() -> None:
+    assert labels(hall(12, 6, in_line(1)), "corridor", "name") == []
+
+
+@pytest.mark.parametrize(("rack", "aisle", "way"), [(4, 2.4, 2.5), (5.5, 2.4, 3), (5.5, 2.6, 3.5)])
+def test_a_way_leads_past_a_rack_that_leans_on_a_wall_between_the_dead_ends_beside_it(
+    rack: float, aisle: float, way: float
+) -> None:
+    # The aisles are no longer than twice their width.
+    picture = hall(way + rack, 2 * aisle + 2.2, [(way, aisle, way + rack, aisle + 2.2)])
+    assert labels(picture, "junction", "type") == ["L", "L", "end", "end"]
+    assert labels(picture, "corridor", "width") == pytest.approx(sorted([aisle, aisle, way]), abs=0.25)
+
+
+def test_the_last_bay_of_one_row_is_no_way_where_the_rows_beside_go_on_to_the_wall() -> None:
+    racks: Boxes = [(left, low, left + 9, low + 2) for low in (3, 8, 13) for left in (0, 13)]
+    racks[3] = (13, 8, 19, 10)
+    ways = labels(hall(22, 18, racks), "corridor", "width")
+    assert ways == pytest.approx([3.0] * 4 + [4.0], abs=0.25)
