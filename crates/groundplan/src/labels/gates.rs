@@ -52,7 +52,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
         }
     }
     let through = Through::new(seen, views.len());
-    for (gate, is_as_bays) in through.at_walls(strips) {
+    for (gate, is_as_bays) in through.at_walls(strips, &placed) {
         if is_as_bays { &mut doubtful } else { &mut gates }.push(gate);
     }
     let mut sure = Widths::of(views, strips.iter().filter(|strip| !strip.bays).chain(&gates));

@@ -13,6 +13,11 @@ use crate::ends::{overlap, shared, wider};
 const SIDED: f64 = 0.6;
 /// It does so from so far within the side to so far beyond, in widths.
 const SIDE: (f64, f64) = (0.1, 0.25);
+/// Things are parted by more than so many metres.
+const PARTED: f64 = 0.3;
+/// Ways are alike but for this share of their widths, and one that goods hide in part runs beside the other for as much of
+/// the shorter.
+const ALIKE: f64 = 0.2;
 
 /// True when something that is not free stands along both sides of a strip.
 pub fn is_sided(view: &Turned, strip: &Strip) -> bool {
@@ -24,12 +29,6 @@ pub fn is_sided(view: &Turned, strip: &Strip) -> bool {
         held.count(0..columns.len()) as f64 >= SIDED * columns.len() as f64
     })
 }
-
-/// Things are parted by more than so many metres.
-const PARTED: f64 = 0.3;
-/// Ways are alike but for this share of their widths, and one that goods hide in part runs beside the other for as much of
-/// the shorter.
-const ALIKE: f64 = 0.2;
 
 /// True when another that is like it runs beside a strip, with a row between them of which several pieces stand, and ways
 /// lead between these from the one to the other: be there walls at all ends, rooms are not so. Of all it is known where they

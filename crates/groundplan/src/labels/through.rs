@@ -3,6 +3,7 @@
 //! A row of empty bays looks like a way, but rows side by side have their empty bays anywhere. How likely so many are
 //! free at one place is told by how much of all of them is free elsewhere.
 
+use super::beside::Beside;
 use super::corridors::Strip;
 use super::gates;
 use super::racks::{DEPTH, Row};
@@ -137,11 +138,12 @@ impl<'a> Through<'a> {
 
     /// The ways between the last of a row and a wall that ends it and the corridors beside it, and whether each is as wide as
     /// bays: of those beside which no other corridor runs, for more rows tell by one another what is a way.
-    pub fn at_walls(&self, strips: &[Strip]) -> Vec<(Strip, bool)> {
+    pub fn at_walls(&self, strips: &[Strip], placed: &[Beside]) -> Vec<(Strip, bool)> {
         let at_wall = |seen: &Seen, side: usize| {
             let ends = seen.columns.way_at_end(side, widest_at_wall(seen.beside))?;
             let [view, other] = seen.views;
-            let is_way = seen.is_at_wall(strips, side) && seen.is_bounded(strips, ends) && seen.is_alone(strips);
+            let is_way =
+                seen.is_at_wall(strips, side) && seen.is_bounded(strips, ends) && seen.is_alone(strips, placed);
             is_way.then(|| (gates::strip(view, other, seen.row, ends, seen.middles), seen.columns.is_as_bays(ends)))
         };
         self.rows.iter().flat_map(|seen| [0, 1].map(|side| at_wall(seen, side))).flatten().collect()
@@ -283,16 +285,15 @@ impl Seen<'_> {
     }
 
     /// True when no third corridor runs beside the two, no further off than a row is deep.
-    fn is_alone(&self, strips: &[Strip]) -> bool {
+    fn is_alone(&self, strips: &[Strip], placed: &[Beside]) -> bool {
         let [below, above] = self.between;
         let beside = wider([strips[below].across[0], strips[above].across[1]], DEPTH.1);
-        let is_third = |(n, strip): (usize, &Strip)| {
+        let is_third = |n: usize| {
             !self.between.contains(&n)
-                && strip.direction == self.row.direction
-                && overlap(strip.along, self.row.along) > 0.0
-                && overlap(strip.across, beside) > 0.0
+                && overlap(strips[n].along, self.row.along) > 0.0
+                && overlap(strips[n].across, beside) > 0.0
         };
-        !strips.iter().enumerate().any(is_third)
+        !placed[self.row.direction].touching(self.row.along, beside).into_iter().any(is_third)
     }
 
     /// True when one of the two corridors leads to a place beyond the row, or a wall goes on along its far side: else that
