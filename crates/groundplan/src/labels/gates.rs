@@ -1,34 +1,19 @@
-//! Ways through rows of racks: gates, which are too short to be known by walls of their own, and which of the strips
-//! that lead across rows do so through their bays.
+//! Ways through rows of racks: gates, which are too short to be known by walls of their own.
 
 use super::Evidence;
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip, UNTOLD};
 use super::look::Look;
-use super::racks::{self, Row};
-use super::sections::{Columns, Free, WIDTH};
-use super::sided;
+use super::racks::Row;
+use super::sections::{Columns, WIDTH};
 use super::through::{Seen, Through};
 use super::turned::Turned;
 use super::widths::Widths;
 use crate::bands::flat_map_each;
-use crate::ends::{around, overlap, shared, sorted, wider};
-use std::collections::BTreeMap;
+use crate::ends::{around, overlap, sorted, wider};
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
 const IN_LINE: (f64, f64) = (0.7, 0.5);
-/// What shares so much of a row's depth leads into it.
-const ENTERS: f64 = 0.35;
-/// A strip is a way through all the rows that it finds free when, by how seldom each of them is free elsewhere, fewer
-/// such than this would be expected of all places; and one that is like bays only then.
-const EXPECTED: (f64, f64) = (0.05, 0.005);
-/// Where posts recur along the rows, what crosses them is no more than so many times as long as the shorter of the two
-/// corridors beside a row: short ones between the goods of racks do not make bays of the aisles.
-const LONGER: f64 = 4.0;
-/// Uprights leave so much of a strip that goes on between them.
-const LEFT: f64 = 0.5;
-/// What goes on so far beyond the rows, metres, is a way there.
-const BEYOND: f64 = 2.0;
 
 /// The ways through the rows between corridors, as strips of the direction that crosses them.
 pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], rows: &[Row]) -> Vec<Strip> {
@@ -103,145 +88,6 @@ fn up_to_walls(views: &[Turned], strips: &[Strip], placed: &[Beside], widest: f6
     }
     reaching
 }
-
-/// The strips without what of them leads through bays.
-pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
-    let placed = placed(views, strips.iter().map(Strip::place));
-    let deep: Vec<bool> = strips.iter().map(|strip| strip.bays && is_deep(views, strip, &strips, &placed)).collect();
-    for (strip, is_deep) in strips.iter_mut().zip(deep) {
-        strip.bays &= !is_deep;
-    }
-    let known = crossed(evidence, look, views, &strips, &[], &[]);
-    let mut crossed = by_strip(&known, strips.len());
-    let left: Vec<_> = strips.iter().zip(&crossed).map(|(strip, crossed)| left_between(strip, crossed)).collect();
-    let is_narrower: Vec<bool> = left.iter().map(Option::is_some).collect();
-    if is_narrower.contains(&true) {
-        for (strip, left) in strips.iter_mut().zip(left) {
-            strip.across = left.unwrap_or(strip.across);
-        }
-        let known = self::crossed(evidence, look, views, &strips, &known, &is_narrower);
-        crossed = by_strip(&known, strips.len());
-    }
-    // What is long enough for a way by itself and crosses no row that is known is no bay of one.
-    let is_alone = |strip: &Strip| !strip.is_short() && sided::is_sided(&views[strip.direction], strip);
-    let left = |(strip, crossed): (Strip, Vec<Crossed>)| {
-        if crossed.is_empty() && is_alone(&strip) { vec![strip] } else { ways(strip, crossed) }
-    };
-    strips.into_iter().zip(crossed).flat_map(left).collect()
-}
-
-/// True when a strip leads on between two sides for longer than a row is deep, without a way that crosses it: no bays do.
-/// Of all it is known where they lie.
-fn is_deep(views: &[Turned], strip: &Strip, strips: &[Strip], placed: &[Beside]) -> bool {
-    let view = &views[strip.direction];
-    let corners = view.rectangle(strip.along, strip.across);
-    let mut pieces = vec![(strip.along[0], strip.along[1])];
-    for other in views.iter().filter(|other| other.direction != strip.direction) {
-        let [along, across] = [0, 1].map(|axis| around(corners.iter().map(|&corner| other.place(corner)[axis])));
-        let crossing = placed[other.direction].touching(along, across).into_iter().map(|n| &strips[n]);
-        for way in crossing.filter(|way| !way.bays) {
-            if let Some([from, to]) = racks::crossed(view, other, way, way.along, strip.across) {
-                pieces = racks::without(pieces, from, to);
-            }
-        }
-    }
-    let piece = |(from, to): (f64, f64)| Strip { along: [from, to], ..strip.clone() };
-    pieces.into_iter().map(piece).any(|piece| piece.length() > racks::DEPTH.1 && sided::is_sided(view, &piece))
-}
-
-/// What uprights of the rows that a strip crosses leave of it, where they stand in it in most of them: a line along it was
-/// no side of it, but that of what stands in other rows.
-fn left_between(strip: &Strip, crossed: &[Crossed]) -> Option<[f64; 2]> {
-    let within: Vec<_> = crossed.iter().filter(|row| !row.at_end).collect();
-    let open = within.iter().filter(|row| row.open).count();
-    if within.len() < 2 || 2 * open >= within.len() {
-        return None;
-    }
-    let common = within.iter().fold(vec![strip.across], |common, row| {
-        let both = common.iter().flat_map(|&one| row.between.iter().map(move |&two| shared(one, two)));
-        both.filter(is_wide).collect()
-    });
-    let width = |ends: &[f64; 2]| ends[1] - ends[0];
-    let left = common.into_iter().max_by(|a, b| width(a).total_cmp(&width(b)))?;
-    (width(&left) >= LEFT * strip.width()).then_some(left)
-}
-
-/// True when a way may lead through.
-fn is_wide(ends: &[f64; 2]) -> bool {
-    ends[1] - ends[0] >= WIDTH.0
-}
-
-/// A row between two of the strips, and which of them lead across it.
-struct Across {
-    row: Row,
-    strips: Vec<(usize, Crossed)>,
-}
-
-/// The rows that each strip crosses, in their order.
-fn by_strip(rows: &[Across], strips: usize) -> Vec<Vec<Crossed>> {
-    let mut crossed: Vec<Vec<Crossed>> = vec![Vec::new(); strips];
-    for (n, row) in rows.iter().flat_map(|row| &row.strips) {
-        crossed[*n].push(row.clone());
-    }
-    crossed
-}
-
-/// The rows that strips cross. Those that are known from before some strips became narrower are as they were where none of
-/// these has to do with them.
-fn crossed(
-    evidence: &Evidence,
-    look: &Look,
-    views: &[Turned],
-    strips: &[Strip],
-    known: &[Across],
-    is_narrower: &[bool],
-) -> Vec<Across> {
-    let mut crossed = Vec::new();
-    let place = |row: &Row| (row.between, row.along[0].to_bits());
-    let known: BTreeMap<_, &Across> = known.iter().map(|across| (place(&across.row), across)).collect();
-    // Where a direction does not tell its own bays, they are as those of the others.
-    let common = views.iter().find_map(|view| view.pitch);
-    let placed = placed(views, strips.iter().map(Strip::place));
-    let widest = corridors::widest(strips);
-    for view in views.iter().filter(|_| common.is_some()) {
-        let Some(other) = crossing(views, view.direction) else { continue };
-        // The rows as they were if nothing led across them.
-        let is_aisle = |n: &usize| {
-            strips[*n].direction == view.direction && !strips[*n].bays && !racks::is_within_row(strips, &placed, *n)
-        };
-        let numbers: Vec<usize> = (0..strips.len()).filter(is_aisle).collect();
-        let aisles: Vec<Strip> = numbers.iter().map(|&n| strips[n].clone()).collect();
-        let extents: Vec<[f64; 2]> = aisles.iter().map(|strip| strip.along).collect();
-        let mut rows = racks::between(views, &aisles, &extents);
-        for row in &mut rows {
-            row.between = row.between.map(|pair| pair.map(|n| numbers[n]));
-        }
-        let crossing = |row: &Row| -> Vec<(usize, Crossed)> {
-            let Some(between) = row.between else { return Vec::new() };
-            let near = leading_across([view, other], &placed, row, widest);
-            let is_as_before = |before: &&&Across| {
-                let of_before = before.strips.iter().map(|(n, _)| n);
-                before.row == *row && !near.iter().chain(of_before).chain(&between).any(|&n| is_narrower[n])
-            };
-            if let Some(before) = known.get(&place(row)).filter(is_as_before) {
-                return before.strips.clone();
-            }
-            let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, view.pitch.or(common));
-            let (ways, open) = (columns.ways(), columns.open());
-            let aisles = between.map(|n| &strips[n]);
-            // Then the rows might as well be what lies between two ways across the rows.
-            let shorter = aisles.iter().map(|aisle| aisle.length()).fold(f64::INFINITY, f64::min);
-            let times = if view.pitch.is_some() { LONGER } else { 1.0 };
-            let judged = near.into_iter().filter(|&n| strips[n].length() < times * shorter);
-            let cross = |n: usize| cross([view, other], row, (&columns, &ways, &open), &strips[n], aisles);
-            judged.filter_map(|n| cross(n).map(|crossed| (n, crossed))).collect()
-        };
-        let found = flat_map_each(rows.len(), evidence.threads, |n| [crossing(&rows[n])]);
-        crossed.extend(rows.into_iter().zip(found).map(|(row, strips)| Across { row, strips }));
-    }
-    crossed
-}
-
 /// Of strips by their directions and places those along another direction that may lead across a row; none is wider than
 /// the widest.
 pub fn leading_across([view, other]: [&Turned; 2], placed: &[Beside], row: &Row, widest: f64) -> Vec<usize> {
@@ -251,105 +97,6 @@ pub fn leading_across([view, other]: [&Turned; 2], placed: &[Beside], row: &Row,
     let [along, across] = [0, 1].map(|axis| around(corners.iter().map(|&corner| other.place(corner)[axis])));
     placed[other.direction].touching(along, across)
 }
-
-/// A row that a strip leads across: in the strip's own places, and whether there is a way.
-#[derive(Clone, Debug)]
-struct Crossed {
-    /// From the middle of the one corridor along the row to that of the other.
-    along: [f64; 2],
-    /// From that corridor's far side to the other's.
-    outer: [f64; 2],
-    /// There is a way of its own.
-    way: bool,
-    /// There may be one, if the strip is one elsewhere.
-    open: bool,
-    /// It passes the row's end.
-    at_end: bool,
-    /// Where nothing stands in the row between the strip's sides: where else it is so.
-    free: Option<Free>,
-    /// From where to where nothing stands in the row within the strip, across.
-    between: Vec<[f64; 2]>,
-}
-
-/// What a strip finds where it crosses a row; nothing where it ends before.
-fn cross(
-    [view, other]: [&Turned; 2],
-    row: &Row,
-    (columns, ways, open): (&Columns, &[[f64; 2]], &[[f64; 2]]),
-    strip: &Strip,
-    between: [&Strip; 2],
-) -> Option<Crossed> {
-    let sin = libm::sin(other.angle - view.angle);
-    let middle = f64::midpoint(row.across[0], row.across[1]);
-    // The strip's middle where the row's is, and places of the row's direction along the strip.
-    let [s, u] = view.crossing(other, middle, strip.middle());
-    let along = |v: f64| s + (v - middle) / sin;
-    let own = sorted(row.across.map(along));
-    let reach = strip.width() / 2.0 / sin.abs();
-    if overlap(own, strip.along) < ENTERS * (own[1] - own[0]) || u - reach >= row.along[1] || u + reach <= row.along[0]
-    {
-        return None;
-    }
-    let sides = [u - reach, u + reach];
-    let passes = columns.lets_through(sides);
-    let at_end = sides[0] <= row.along[0] + view.cell || sides[1] >= row.along[1] - view.cell;
-    let way = if at_end { columns.may_end_at(sides) } else { ways.iter().any(|way| way[0] < u && u < way[1]) };
-    let free = columns.is_free(sides).then(|| columns.free_elsewhere(sides));
-    let across = |u: f64| other.place(view.to_map([u, middle]))[1];
-    let along_of = |places: [f64; 2]| sorted(places.map(along));
-    Some(Crossed {
-        along: along_of(between.map(Strip::middle)),
-        outer: along_of([between[0].across[0], between[1].across[1]]),
-        way,
-        open: way || passes,
-        at_end,
-        free,
-        between: open.iter().map(|&ends| shared(sorted(ends.map(across)), strip.across)).filter(is_wide).collect(),
-    })
-}
-
-/// A strip's pieces between the rows that it has no way through.
-fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
-    let expected = by_chance(&crossed);
-    if strip.bays && expected >= EXPECTED.1 {
-        return Vec::new();
-    }
-    for row in crossed.iter_mut().filter(|row| expected < EXPECTED.0 && row.free.is_some()) {
-        (row.way, row.open) = (true, true);
-    }
-    if crossed.iter().any(|c| c.at_end && c.way) {
-        crossed.retain(|c| !c.at_end);
-    }
-    crossed.sort_by(|a, b| a.along[0].total_cmp(&b.along[0]));
-    let piece = |along: [f64; 2]| Strip { along, ..strip.clone() };
-    let is_way = crossed.iter().any(|c| c.way);
-    let (Some(first), Some(last)) =
-        (crossed.iter().position(|c| is_way && c.open), crossed.iter().rposition(|c| is_way && c.open))
-    else {
-        let (Some(first), Some(last)) = (crossed.first(), crossed.last()) else { return vec![strip] };
-        let ends = [[strip.along[0], first.outer[0]], [last.outer[1], strip.along[1]]];
-        return ends.into_iter().filter(|[from, to]| to - from >= BEYOND).map(piece).collect();
-    };
-    let from = if first == 0 { strip.along[0] } else { crossed[first].along[0] };
-    let to = if last + 1 == crossed.len() { strip.along[1] } else { crossed[last].along[1] };
-    vec![piece([from, to])]
-}
-
-/// How many places would be expected at which as many rows are free by chance (as of alignments, Desolneux, Moisan and
-/// Morel 2000).
-fn by_chance(crossed: &[Crossed]) -> f64 {
-    let rows = || crossed.iter().filter_map(|row| row.free.map(|free| (row.at_end, free)));
-    if rows().count() < 2 {
-        return f64::INFINITY;
-    }
-    // Rows of a place are filled alike: as if of all their places one more were free and one were not.
-    let sum = |of: fn(Free) -> f64| rows().map(|(_, free)| of(free)).sum::<f64>();
-    let common = (sum(|free| free.free) + 1.0) / (sum(|free| free.places) + 2.0);
-    let chance: f64 = rows().map(|(_, row)| common.max(row.free / row.places.max(1.0))).product();
-    // A row has many places, but two ends.
-    chance * rows().map(|(at_end, row)| if at_end { 2.0 } else { row.places }).fold(0.0, f64::max)
-}
-
 /// The direction that is most nearly square to another.
 pub fn crossing(views: &[Turned], direction: usize) -> Option<&Turned> {
     let sine = |view: &&Turned| libm::sin(view.angle - views[direction].angle).abs();

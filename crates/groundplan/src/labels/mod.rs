@@ -8,6 +8,7 @@ mod blocks;
 mod columns;
 mod confidence;
 mod corridors;
+mod crossed;
 mod faced;
 mod family;
 mod frames;

@@ -4,6 +4,7 @@
 use super::beside::{Beside, placed};
 use super::blocks::Standing;
 use super::corridors::{self, ALONE, Strip};
+use super::crossed;
 use super::faced;
 use super::gates;
 use super::heads;
@@ -138,7 +139,7 @@ impl Plan {
         let is_on =
             |way: &Strip| beyond[way.direction].touching(way.along, way.across).into_iter().any(|n| on[n] == *way);
         found.retain(|way| !is_on(way));
-        let found = gates::without_bays(evidence, look, views, found);
+        let found = crossed::without_bays(evidence, look, views, found);
         let threads = evidence.threads;
         let standing = Standing::new(views, threads);
         // What was too short to stay bars no way whose sides are no lines, but tells how wide that is.
