@@ -407,6 +407,7 @@ def test_one_grey_is_a_valid_map(tmp_path: Path, grey: int, told: list[str], siz
         assert (got.height, got.width) == size
     # Where a grey is taken as it is no threshold helps.
     raw = read(path, resolution=0.05, mode="raw")
+    assert codes(raw)
     assert all("--mode trinary" in message(raw, code) for code in codes(raw))
 
 

@@ -54,7 +54,6 @@ def test_around_a_single_thing_in_a_room_is_no_way() -> None:
 def test_a_way_leads_past_a_rack_that_leans_on_a_wall_between_the_dead_ends_beside_it(
     rack: float, aisle: float, way: float
 ) -> None:
-    # The aisles are no longer than twice their width.
     picture = hall(way + rack, 2 * aisle + 2.2, [(way, aisle, way + rack, aisle + 2.2)])
     assert labels(picture, "junction", "type") == ["L", "L", "end", "end"]
     assert labels(picture, "corridor", "width") == pytest.approx(sorted([aisle, aisle, way]), abs=0.25)

@@ -26,7 +26,9 @@ def test_a_survey_is_the_same_with_one_two_and_four_threads(name: str) -> None:
 
 
 def test_stages_are_the_same_with_one_and_four_threads() -> None:
-    map = groundplan.from_array(tall(), RESOLUTION)
+    # As many as four threads have pixels enough for.
+    map = groundplan.from_array(np.ascontiguousarray(np.tile(tall(), (3, 2))), RESOLUTION)
+    assert map.width * map.height >= 4 << 18
     gradients = groundplan.find_gradients(map, threads=1)
     assert groundplan.find_gradients(map, threads=4) == gradients
     directions = groundplan.find_directions(map, gradients, threads=1)
@@ -36,6 +38,8 @@ def test_stages_are_the_same_with_one_and_four_threads() -> None:
     lines = groundplan.find_lines(radiograms)
     one, four = (groundplan.find_occupancy(map, directions, lines, gradients, threads=n) for n in (1, 4))
     assert one == four
+    labelled = (groundplan.survey(map, threads=n).to_json() for n in (1, 4))
+    assert len(set(labelled)) == 1
 
 
 def test_more_edge_pixels_than_one_thread_projects_at_a_time_give_the_same_directions() -> None:

@@ -24,8 +24,9 @@ def whole(path: str | os.PathLike[str]) -> Iterator[Path]:
     """
     target = Path(path)
     try:
-        if target.parent.exists() and not target.parent.is_dir():
-            raise NotADirectoryError(errno.ENOTDIR, f"{target.parent} is a file and no directory")
+        above = next((place for place in target.parents if place.exists()), None)
+        if above is not None and not above.is_dir():
+            raise NotADirectoryError(errno.ENOTDIR, f"{above} is a file and no directory")
         target.parent.mkdir(parents=True, exist_ok=True)
         if target.is_dir():  # told before the work, not after it
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))

@@ -5,11 +5,11 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::{Scope, ScopedJoinHandle};
 
-/// Rows of one band: enough to be worth a thread's while, few enough to share out evenly.
+/// Rows of one band: few enough to share out evenly.
 pub const BAND_ROWS: usize = 64;
 /// Such as strips, or rows of racks.
 const SEVERAL: usize = 32;
-/// Pixels, or cells of a view, that are worth a thread's while: less takes as long as to start one.
+/// Each thread has so many pixels, or cells of a view, at least: less takes as long as to start one.
 const WORTH: usize = 1 << 18;
 
 /// What `pass` makes of each band of the rows of so many pixels by so many, in the bands' order. Threads are started only

@@ -88,6 +88,7 @@ fn up_to_walls(views: &[Turned], strips: &[Strip], placed: &[Beside], widest: f6
     }
     reaching
 }
+
 /// Of strips by their directions and places those along another direction that may lead across a row; none is wider than
 /// the widest.
 pub fn leading_across([view, other]: [&Turned; 2], placed: &[Beside], row: &Row, widest: f64) -> Vec<usize> {
@@ -97,6 +98,7 @@ pub fn leading_across([view, other]: [&Turned; 2], placed: &[Beside], row: &Row,
     let [along, across] = [0, 1].map(|axis| around(corners.iter().map(|&corner| other.place(corner)[axis])));
     placed[other.direction].touching(along, across)
 }
+
 /// The direction that is most nearly square to another.
 pub fn crossing(views: &[Turned], direction: usize) -> Option<&Turned> {
     let sine = |view: &&Turned| libm::sin(view.angle - views[direction].angle).abs();

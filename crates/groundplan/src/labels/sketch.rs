@@ -307,8 +307,8 @@ fn connected(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<S
     }
 }
 
-/// How many others that are alike run beside a strip, one after another, so far apart, metres, of those that count and of no
-/// more than [`OTHERS`] on a side.
+/// How many others that are alike run beside a strip, one after another, so far apart, metres, of those that count and lie
+/// no farther off than [`OTHERS`] of them take. Where they may not touch there are racks between them.
 fn alike(strips: &[Strip], placed: &[Beside], n: usize, apart: (f64, f64), counts: impl Fn(usize) -> bool) -> usize {
     let own = &strips[n];
     let alike = |one: f64, two: f64| (one - two).abs() <= ALIKE * one.max(two);

@@ -152,6 +152,9 @@ pub struct Layer {
     row_runs: Vec<u32>,
 }
 
+/// A little more than rounding may move a place, pixels.
+const ROUNDED: f64 = 1e-4;
+
 /// Where a robot's middle may be.
 #[derive(Clone, Debug)]
 pub struct Space {
@@ -182,7 +185,7 @@ impl Space {
             free
         };
         // Anywhere in a pixel is at most half a diagonal from its centre.
-        let safe = less(free.clone(), if clearance > 0.0 { clearance + FRAC_1_SQRT_2 + 1e-4 } else { 0.0 });
+        let safe = less(free.clone(), if clearance > 0.0 { clearance + FRAC_1_SQRT_2 + ROUNDED } else { 0.0 });
         let tight = less(free, radius);
         // Along a wall there is room within a pixel of what is tight; where there is none, it is a passage.
         let mut narrow = tight.clone();
@@ -206,7 +209,8 @@ impl Space {
         let near = |n: usize, size: usize| n.saturating_sub(reach)..(n + reach + 1).min(size);
         let beyond = |n: usize, at: f64| (n as f64 - at).max(at - n as f64 - 1.0).max(0.0);
         let taken = |(x, y): (usize, usize)| {
-            self.occupied.has(x, y) && libm::hypot(beyond(x, place[0]), beyond(y, place[1])) < self.radius
+            // By what places are rounded to, a pixel's middle may lie nearer.
+            self.occupied.has(x, y) && libm::hypot(beyond(x, place[0]), beyond(y, place[1])) < self.radius - ROUNDED
         };
         let columns = near(x, rows.width);
         let is_open = rows.has(x, y) && !near(y, rows.height).any(|y| columns.clone().any(|x| taken((x, y))));
