@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from groundplan import Map
+from groundplan.maps import UNKNOWN
 
 Points = npt.NDArray[np.float64]
 
@@ -21,8 +22,6 @@ YAW_DEG = 0.1
 MARGIN = (7, 3, 5, 10)
 #: The name of the first of them.
 AS_IT_IS = "as it is"
-#: What a pixel's state is when nothing is known of it.
-UNKNOWN = 2
 
 
 @dataclass(frozen=True)

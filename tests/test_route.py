@@ -224,6 +224,20 @@ def test_places_are_points_names_and_faces() -> None:
     assert (stay.length, stay.faces.tolist()) == (0.0, [face])
 
 
+@pytest.mark.parametrize("seed", SEEDS)
+def test_every_place_has_a_way_to_itself_or_no_room(seed: int) -> None:
+    map, survey = site(seed)
+    free = np.flatnonzero(survey.occupancy.free > 0.5).tolist()
+    assert len(free) > 20
+    for face in free:
+        try:
+            way = survey.route(face, face, clearance=0.3, map=map)
+        except ParameterError as fault:
+            assert fault.code == "route.blocked"
+        else:
+            assert way is not None, face
+
+
 @pytest.mark.parametrize(
     ("place", "clearance", "code", "said"),
     [

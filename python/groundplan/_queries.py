@@ -147,7 +147,10 @@ class Queries:
         """A point that a robot may stand on."""
         if isinstance(place, str):
             label = self._named(place)
-            ring = np.asarray(label.get("polygon", label.get("axis")), dtype=np.float64)
+            # A pillar is gone up to.
+            beside = [label["width"] / 2 + clearance] if label["kind"] == "pillar" else []
+            corners = [np.add(label["at"], side * by) for by in beside for side in (-1, 1)]
+            ring = np.asarray(label.get("polygon", label.get("axis", corners)), dtype=np.float64)
             axis = np.asarray(label["axis"]).mean(axis=0) if "axis" in label else ring.mean(axis=0)
             middle = label.get("at", axis)
         elif isinstance(place, int | np.integer) and not isinstance(place, bool):
@@ -173,12 +176,10 @@ class Queries:
             from groundplan.export._places import places
 
             others = {place.name: self.survey.labels[place.label] for place in places(self.survey)}
-            names |= {
-                n: label for n, label in others.items() if n not in names and ("polygon" in label or "axis" in label)
-            }
+            names |= {n: label for n, label in others.items() if n not in names and {"polygon", "at"} & label.keys()}
         if name not in names:
             own = [known for known in names if known.casefold() == name.casefold()]
-            near = own or get_close_matches(name, names, 1)
+            near = own or get_close_matches(name, [known for known in names if known[:1] == name[:1]], 1)
             hint = f"did you mean {near[0]}?" if near else PLACE
             raise ParameterError("route.name", f"no label is named {name!r}", hint)
         return names[name]
