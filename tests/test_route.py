@@ -201,6 +201,44 @@ def test_what_stands_in_rows_is_kept_clear_of_without_the_map(seed: int) -> None
     assert sum(clearance >= 0.3 - 1e-6 for clearance in kept) >= 0.75 * len(kept)
 
 
+@cache
+def racks_on_legs() -> Map:
+    """A hall of 20 m by 14 m with three racks of six bays, of which a lidar sees the legs."""
+    drawn = Canvas(440, 320).room(20, 20, 420, 300)
+    for row in range(3):
+        for column in range(7):
+            for side in (0, 20):
+                x, y = 92 + 42 * column, 78 + 70 * row + side
+                drawn.box(x, y, x + 2, y + 2)
+    return groundplan.from_array(drawn.picture, RESOLUTION)
+
+
+def test_a_way_under_racks_is_told_and_one_around_them_keeps_off_them() -> None:
+    map = racks_on_legs()
+    survey = groundplan.survey(map)
+    assert len(survey.of_kind("rack")) == 3
+    below, above = (11.0, 2.5), (11.0, 12.5)
+    under = survey.route(below, above, clearance=0.4)
+    assert under is not None
+    assert sorted(under.racks) == sorted(rack["name"] for rack in survey.of_kind("rack"))
+    assert under.length == pytest.approx(10.0, abs=0.5)
+    for asked, of_map in ((survey, None), (Survey.from_json(survey.to_json()), None), (survey, map)):
+        around = asked.route(below, above, clearance=0.4, around_racks=True, map=of_map)
+        assert around is not None
+        assert around.racks == ()
+        assert around.length > 15.0
+        for rack in survey.of_kind("rack"):
+            low, high = np.min(rack["polygon"], axis=0), np.max(rack["polygon"], axis=0)
+            apart = np.hypot(*np.maximum(0, np.maximum(low - sampled(around), sampled(around) - high)).T)
+            # A pixel is taken by its middle.
+            assert apart.min() >= 0.4 - RESOLUTION / 2
+    # A rack itself is gone up to.
+    name = survey.of_kind("rack")[0]["name"]
+    up_to = survey.route(below, name, clearance=0.4, around_racks=True)
+    assert up_to is not None
+    assert up_to.racks == ()
+
+
 def test_places_are_points_names_and_faces() -> None:
     _, survey = site(SEEDS[0])
     corridor = survey.of_kind("corridor")[0]
@@ -296,5 +334,13 @@ def test_the_command_prints_the_way_and_draws_it(
     wrong = call(capsys, "route", "open", "-1.5,3", "6.5,1")
     assert wrong.code == 2
     assert "(-1.5, 3) lies outside the map" in wrong.err
+    Image.fromarray(racks_on_legs().pixels).save("legs.png")
+    assert call(capsys, "survey", "legs.png", "--resolution", "0.05", "-o", "legs", "-q").code == 0
+    under = call(capsys, "route", "legs", "11,2.5", "11,12.5", "--json")
+    assert len(json.loads(under.out)["racks"]) == 3
+    assert "under or through S" in under.err
+    assert under.err.endswith("hint: --around-racks takes racks as occupied\n")
+    around = call(capsys, "route", "legs", "11,2.5", "11,12.5", "--around-racks", "--json")
+    assert (json.loads(around.out)["racks"], around.err) == ([], "")
     Path("open.png").unlink()
     assert "what the survey knows" in call(capsys, "route", "open", "1.5,3.0", "6.5,1.2").err

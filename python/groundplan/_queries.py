@@ -32,6 +32,8 @@ LESS = "a smaller clearance may leave room"
 
 #: Clearances whose free space is kept ready.
 KEPT = 4
+#: A way is asked every so many metres whether it is in a rack, which are twice as deep at least.
+STEP = 0.2
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -48,12 +50,15 @@ class Route(Stage):
         Metres.
     clearance : float
         What it keeps from what is occupied, metres.
+    racks : tuple of str
+        Names of the racks that it leads under or through: such as stand on legs, or have empty bays.
     """
 
     faces: Ids
     points: Floats
     length: float
     clearance: float
+    racks: tuple[str, ...] = ()
 
 
 def no_point(x: Any, y: Any) -> ParameterError:
@@ -83,7 +88,7 @@ class Queries:
         if self.locator.faces != len(survey.subdivision.areas):
             said = f"its lines make {self.locator.faces} faces and it has {len(survey.subdivision.areas)}"
             raise FormatError("survey.content", f"the survey is not whole: {said}")
-        self._ways: dict[tuple[float, int], tuple[Map | None, _core.Ways]] = {}
+        self._ways: dict[tuple[float, bool, int], tuple[Map | None, _core.Ways]] = {}
 
     def locate_all(self, x: npt.ArrayLike, y: npt.ArrayLike) -> SignedIds:
         """The faces that hold points, `NONE` outside."""
@@ -96,37 +101,41 @@ class Queries:
         points = np.column_stack([xs.ravel(), ys.ravel()])
         return self.locator.locate_all(points).reshape(xs.shape)
 
-    def route(self, a: Place, b: Place, clearance: float, map: Map | None) -> Route | None:
+    def route(self, a: Place, b: Place, clearance: float, around_racks: bool, map: Map | None) -> Route | None:
         """As `Survey.route`."""
         if not _is_number(clearance) or not 0 <= clearance < math.inf:
             raise ParameterError("route.clearance", f"the clearance cannot be {clearance!r}", "metres from 0 on")
-        ways = self.ways(float(clearance), map)
+        ways = self.ways(float(clearance), around_racks, map)
         start, end = (self.place(place, ways, clearance) for place in (a, b))
         found = ways.route(start, end)
         if found is None:
             return None
         length = float(np.hypot(*np.diff(found, axis=0).T).sum())
-        return Route(self.locator.along(found), found, length, float(clearance))
+        passed = [self.survey.labels[n] for n in self.locator.labels_along(found, STEP)]
+        racks = tuple(label["name"] for label in passed if label["kind"] == "rack")
+        return Route(self.locator.along(found), found, length, float(clearance), racks)
 
-    def ways(self, clearance: float, map: Map | None) -> _core.Ways:
+    def ways(self, clearance: float, around_racks: bool, map: Map | None) -> _core.Ways:
         """The free space that keeps a clearance."""
-        key = (clearance, id(map))
+        key = (clearance, bool(around_racks), id(map))
         if key not in self._ways:
             if len(self._ways) == KEPT:
                 del self._ways[next(iter(self._ways))]
+            racks = self.survey.of_kind("rack") if around_racks else ()
+            closed = _ragged([rack["polygon"] for rack in racks])
             # The map is held with it, so that no other has its id.
-            made = self._of_survey(clearance) if map is None else self._of_map(clearance, map)
+            made = self._of_survey(closed, clearance) if map is None else self._of_map(closed, clearance, map)
             self._ways[key] = map, made
         return self._ways[key][1]
 
-    def _of_map(self, clearance: float, map: Map) -> _core.Ways:
+    def _of_map(self, closed: tuple[Floats, list[int]], clearance: float, map: Map) -> _core.Ways:
         info, needed = self.survey.map, needs(Map, "map", map)
         if (needed.width, needed.height) != (info.width, info.height):
             said = f"the map has {map.width} x {map.height} pixels, and the surveyed one {info.width} x {info.height}"
             raise ParameterError("route.map", said)
-        return _core.Ways.of_map(layout(needed), clearance)
+        return _core.Ways.of_map(layout(needed), closed, clearance)
 
-    def _of_survey(self, clearance: float) -> _core.Ways:
+    def _of_survey(self, closed: tuple[Floats, list[int]], clearance: float) -> _core.Ways:
         survey, cut = self.survey, self.survey.subdivision
         regions = survey.of_kind("region")
         rings = [ring for region in regions for ring in (region["polygon"], *region.get("holes", ()))]
@@ -141,7 +150,7 @@ class Queries:
         for pillar in survey.of_kind("pillar"):
             half = pillar.get("width", 0) / 2
             taken.append(np.array(pillar["at"]) + half * np.array([[-1, -1], [1, 1], [-1, 1], [1, -1]]))
-        return _core.Ways.of_survey(self.frame, *_ragged(rings), np.concatenate(taken), clearance)
+        return _core.Ways.of_survey(self.frame, _ragged(rings), np.concatenate(taken), closed, clearance)
 
     def place(self, place: Place, ways: _core.Ways, clearance: float) -> tuple[float, float]:
         """A point that a robot may stand on."""
@@ -199,7 +208,7 @@ class Queries:
             nearest = ways.nearest(x, y, 2.0)
             hint = LESS
             if nearest:
-                hint = f"the nearest point that is, is ({nearest[0]:.2f}, {nearest[1]:.2f})"
+                hint = f"the nearest point that is, is ({nearest[0]:.3f}, {nearest[1]:.3f})"
             said = f"({x:g}, {y:g}) is not free and {clearance:g} m from what is occupied"
             raise ParameterError("route.blocked", said, hint)
         return x, y

@@ -199,16 +199,21 @@ class Survey(Stage):
             raise no_point(x, y)
         return [self.labels[n] for n in self._queries.locator.labels_at(x, y)]
 
-    def route(self, a: Place, b: Place, *, clearance: float = 0.3, map: Map | None = None) -> Route | None:
+    def route(
+        self, a: Place, b: Place, *, clearance: float = 0.3, around_racks: bool = False, map: Map | None = None
+    ) -> Route | None:
         """The shortest way from one place to another, None where there is none.
 
         Parameters
         ----------
         a, b
-            A point (x, y) in metres in the map frame, the name of a label ("A03") or the id of a face. From a label or
-            a face the way begins near its middle, where the clearance allows.
+            A point (x, y) in metres in the map frame, the name of a label ("A03", or "J01" as in exports) or the id of
+            a face. From a label or a face the way begins near its middle, where the clearance allows.
         clearance
             What to keep from what is occupied, metres: the robot's radius and what it needs beside.
+        around_racks
+            Take racks as occupied. A map has what the lidar saw: under a rack that stands on legs, and in its empty
+            bays, pixels are free, and the shortest way may lead there; `Route.racks` says where it does.
         map
             The surveyed map; a survey that was just made still has it.
 
@@ -232,7 +237,7 @@ class Survey(Stage):
             ``route.blocked`` where a robot with that clearance cannot be; ``route.clearance``; ``route.map`` for a map
             of another size.
         """
-        return self._queries.route(a, b, clearance, self.__dict__.get("_map") if map is None else map)
+        return self._queries.route(a, b, clearance, around_racks, self.__dict__.get("_map") if map is None else map)
 
     @overload
     def update(self, change: Map, *, threads: int | None = None) -> Survey: ...

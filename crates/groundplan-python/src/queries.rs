@@ -24,6 +24,9 @@ fn points(array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<[f64; 2]>> {
     Ok(array.rows().into_iter().map(|row| [row[0], row[1]]).collect())
 }
 
+/// Points of rings one after another, and where each begins.
+type Ragged<'py> = (PyReadonlyArray2<'py, f64>, Vec<usize>);
+
 /// Ragged points as rings.
 fn rings(array: &PyReadonlyArray2<'_, f64>, offsets: &[usize]) -> PyResult<Vec<Vec<[f64; 2]>>> {
     let points = points(array)?;
@@ -84,6 +87,12 @@ impl Locator {
         self.labels.holding([x, y])
     }
 
+    /// The labels whose polygons hold a point of a way, of which one is asked every so many metres; ascending.
+    fn labels_along(&self, way: PyReadonlyArray2<'_, f64>, step: f64) -> PyResult<Vec<u32>> {
+        let points = points(&way)?;
+        Ok(self.labels.along(&points, step))
+    }
+
     /// The faces that a way passes through, in order.
     fn along<'py>(&self, py: Python<'py>, way: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray1<u32>>> {
         let points = points(&way)?;
@@ -102,26 +111,29 @@ pub struct Ways(route::Ways);
 
 #[pymethods]
 impl Ways {
-    /// Over a map's own pixels.
+    /// Over a map's own pixels, none of which are free within rings.
     #[staticmethod]
-    fn of_map(py: Python<'_>, layout: Layout<'_>, clearance: f64) -> PyResult<Self> {
-        layout.with_grid(py, |grid| route::Ways::of_map(grid, clearance)).map(Self)
+    fn of_map(py: Python<'_>, layout: Layout<'_>, closed: Ragged<'_>, clearance: f64) -> PyResult<Self> {
+        let closed = rings(&closed.0, &closed.1)?;
+        layout.with_grid(py, |grid| route::Ways::of_map(grid, &closed, clearance)).map(Self)
     }
 
-    /// Over what a survey knows: free within an odd number of rings, taken along segments (two points each).
+    /// Over what a survey knows: free within an odd number of rings, taken along segments (two points each) and within
+    /// other rings.
     #[staticmethod]
     fn of_survey(
         py: Python<'_>,
         place: Place,
-        ring_points: PyReadonlyArray2<'_, f64>,
-        offsets: Vec<usize>,
+        free: Ragged<'_>,
         taken: PyReadonlyArray2<'_, f64>,
+        closed: Ragged<'_>,
         clearance: f64,
     ) -> PyResult<Self> {
         let ends = points(&taken)?;
         let evidence = Evidence {
-            rings: rings(&ring_points, &offsets)?,
+            rings: rings(&free.0, &free.1)?,
             taken: ends.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect(),
+            closed: rings(&closed.0, &closed.1)?,
         };
         Ok(Self(py.detach(|| route::Ways::of_survey(&frame(place), &evidence, clearance))))
     }

@@ -7,6 +7,7 @@ use crate::arrangement::{Arrangement, NONE, arrange};
 use crate::ends::{around, sorted};
 use crate::grid::Frame;
 use crate::lines::Lines;
+use std::collections::BTreeSet;
 
 /// Lattice steps of a pixel.
 const STEPS: f64 = (1u64 << 26) as f64;
@@ -244,5 +245,20 @@ impl Polygons {
             }
         }
         held
+    }
+    /// The numbers of the polygons that hold a point of a way, of which one is asked every `step` metres and each bend;
+    /// ascending.
+    #[must_use]
+    pub fn along(&self, way: &[[f64; 2]], step: f64) -> Vec<u32> {
+        let held = way.windows(2).flat_map(|ends| {
+            let [from, to] = [ends[0], ends[1]];
+            let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+            let steps = (libm::hypot(dx, dy) / step).ceil().max(1.0) as usize;
+            (0..=steps).flat_map(move |n| {
+                let t = n as f64 / steps as f64;
+                self.holding([from[0] + t * dx, from[1] + t * dy])
+            })
+        });
+        held.collect::<BTreeSet<u32>>().into_iter().collect()
     }
 }

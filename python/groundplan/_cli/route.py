@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 #: The exit code where there is no way.
 NO_WAY = 4
+#: So many racks are named.
+SHOWN = 5
 
 
 def fill(own: argparse.ArgumentParser) -> None:
@@ -40,6 +42,7 @@ def fill(own: argparse.ArgumentParser) -> None:
     own.add_argument(
         "--clearance", type=number, default=0.3, metavar="M", help="to keep from what is occupied, m (default: 0.3)"
     )
+    own.add_argument("--around-racks", action="store_true", help="take racks as occupied, be they on legs or empty")
     own.add_argument("--map", metavar="MAP", help="the surveyed map, where the survey's own name for it leads nowhere")
     own.add_argument("--figure", metavar="FILE", type=Path, help="draw it over the map: a PNG, SVG or PDF")
     own.add_argument("--json", action="store_true", help="print points, faces and length as JSON")
@@ -63,7 +66,9 @@ def run(arguments: argparse.Namespace) -> None:
     with terminal.status(arguments.quiet) as status:
         map = _map(arguments, survey, path)
         status("looking for the way")
-        way = survey.route(arguments.a, arguments.b, clearance=arguments.clearance, map=map)
+        way = survey.route(
+            arguments.a, arguments.b, clearance=arguments.clearance, around_racks=arguments.around_racks, map=map
+        )
         if way is not None and arguments.figure is not None:
             if map is None:
                 raise FormatError("survey.source", "a figure is drawn over the map", "--map MAP says where it is")
@@ -81,16 +86,25 @@ def run(arguments: argparse.Namespace) -> None:
 
             terminal.say("hint", LESS)
         raise SystemExit(NO_WAY)
+    if way.racks and not arguments.around_racks and not arguments.quiet:
+        terminal.say("warning", f"the way leads under or through {_listed(way.racks)}: on legs, or with empty bays")
+        terminal.say("hint", "--around-racks takes racks as occupied")
     if arguments.json:
         answer = {
             "length": way.length,
             "clearance": way.clearance,
+            "racks": list(way.racks),
             "points": way.points.tolist(),
             "faces": way.faces.tolist(),
         }
         terminal.put(json.dumps(answer) + "\n")
     else:
         terminal.put("".join(f"{x:.3f} {y:.3f}\n" for x, y in way.points.tolist()))
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    shown = ", ".join(names[:SHOWN])
+    return shown if len(names) <= SHOWN else f"{shown} and {len(names) - SHOWN} more"
 
 
 def _said(place: str | int | tuple[float, float]) -> str:

@@ -7,6 +7,7 @@ mod jump;
 mod sight;
 mod space;
 
+use crate::ends::around;
 use crate::grid::{Frame, Grid, State, tidy};
 use sight::pull;
 use space::{Bits, Pixel, Space};
@@ -25,6 +26,8 @@ pub struct Evidence {
     pub rings: Vec<Vec<[f64; 2]>>,
     /// Something occupied lies along these.
     pub taken: Vec<[[f64; 2]; 2]>,
+    /// What lies within any of these is as if it were occupied.
+    pub closed: Vec<Vec<[f64; 2]>>,
 }
 
 /// One blank pixel on all sides.
@@ -32,9 +35,10 @@ const BORDER: usize = 1;
 
 impl Ways {
     /// Over the free pixels of a map. Every point of a way is at least `clearance` metres from every occupied pixel,
-    /// its corners included, and within free pixels.
+    /// its corners included, and within free pixels; pixels within any of some rings (metres in the map frame) are taken
+    /// as occupied.
     #[must_use]
-    pub fn of_map(grid: &Grid, clearance: f64) -> Self {
+    pub fn of_map(grid: &Grid, closed: &[Vec<[f64; 2]>], clearance: f64) -> Self {
         let (width, height) = (grid.frame.width, grid.frame.height);
         let mut free = Bits::new(width + 2 * BORDER, height + 2 * BORDER);
         let mut occupied = free.clone();
@@ -49,6 +53,7 @@ impl Ways {
                 occupied.words[start + x / 64] |= is_occupied << (x % 64);
             }
         }
+        close(&grid.frame, closed, &mut free, &mut occupied);
         Self::new(grid.frame, free, occupied, clearance)
     }
 
@@ -58,25 +63,7 @@ impl Ways {
     pub fn of_survey(frame: &Frame, evidence: &Evidence, clearance: f64) -> Self {
         let (width, height) = (frame.width, frame.height);
         let mut free = Bits::new(width + 2 * BORDER, height + 2 * BORDER);
-        let mut crossings: Vec<Vec<f64>> = vec![Vec::new(); height];
-        for ring in &evidence.rings {
-            let ring: Vec<[f64; 2]> = ring.iter().map(|&p| frame.to_pixels(p)).collect();
-            for (&p, &q) in ring.iter().zip(ring.iter().cycle().skip(1)) {
-                let (low, high) = if p[1] < q[1] { (p, q) } else { (q, p) };
-                let rows = |y: f64| (y - 0.5).ceil().clamp(0.0, height as f64) as usize;
-                for (y, row) in crossings.iter_mut().enumerate().take(rows(high[1])).skip(rows(low[1])) {
-                    let part = (y as f64 + 0.5 - low[1]) / (high[1] - low[1]);
-                    row.push(low[0] + part * (high[0] - low[0]));
-                }
-            }
-        }
-        for (y, row) in crossings.iter_mut().enumerate() {
-            row.sort_by(f64::total_cmp);
-            for pair in row.chunks_exact(2) {
-                let [from, to] = [pair[0], pair[1]].map(|x| (x - 0.5).ceil().clamp(0.0, width as f64) as usize);
-                free.fill(y + BORDER, from + BORDER, to + BORDER);
-            }
-        }
+        fill(frame, &evidence.rings, &mut free);
         for ends in &evidence.taken {
             let [p, q] = ends.map(|p| frame.to_pixels(p));
             let steps = (2.0 * libm::hypot(q[0] - p[0], q[1] - p[1])).ceil().max(1.0);
@@ -94,6 +81,7 @@ impl Ways {
             occupied.fill(y, BORDER, width + BORDER);
         }
         occupied.words.iter_mut().zip(&free.words).for_each(|(occupied, free)| *occupied &= !free);
+        close(frame, &evidence.closed, &mut free, &mut occupied);
         Self::new(*frame, free, occupied, clearance)
     }
 
@@ -120,6 +108,9 @@ impl Ways {
     #[must_use]
     pub fn route(&self, from: [f64; 2], to: [f64; 2]) -> Option<Vec<[f64; 2]>> {
         let ends = [self.pixel(from)?, self.pixel(to)?];
+        if ends[0] == ends[1] {
+            return Some(vec![from, to]);
+        }
         let space = &self.space;
         let roomy = match ends.map(|end| space.roomy_beside(end)) {
             [Some(start), Some(end)] => jump::find(&space.roomy, start, end),
@@ -150,4 +141,38 @@ impl Ways {
     fn pixel(&self, point: [f64; 2]) -> Option<Pixel> {
         self.space.pixel(self.place(point))
     }
+}
+
+/// Sets the pixels whose middles lie within an odd number of rings.
+fn fill(frame: &Frame, rings: &[Vec<[f64; 2]>], pixels: &mut Bits) {
+    let (width, height) = (frame.width, frame.height);
+    let rings: Vec<Vec<[f64; 2]>> =
+        rings.iter().map(|ring| ring.iter().map(|&point| frame.to_pixels(point)).collect()).collect();
+    let row = |y: f64| (y - 0.5).ceil().clamp(0.0, height as f64) as usize;
+    let [first, end] = around(rings.iter().flatten().map(|point| point[1])).map(row);
+    let mut crossings: Vec<Vec<f64>> = vec![Vec::new(); end.saturating_sub(first)];
+    for ring in &rings {
+        for (&p, &q) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+            let (low, high) = if p[1] < q[1] { (p, q) } else { (q, p) };
+            for y in row(low[1])..row(high[1]) {
+                let part = (y as f64 + 0.5 - low[1]) / (high[1] - low[1]);
+                crossings[y - first].push(low[0] + part * (high[0] - low[0]));
+            }
+        }
+    }
+    for (y, crossed) in (first + BORDER..).zip(&mut crossings) {
+        crossed.sort_by(f64::total_cmp);
+        for pair in crossed.chunks_exact(2) {
+            let [from, to] = [pair[0], pair[1]].map(|x| (x - 0.5).ceil().clamp(0.0, width as f64) as usize);
+            pixels.fill(y, from + BORDER, to + BORDER);
+        }
+    }
+}
+
+/// Takes what lies within any of some rings as occupied.
+fn close(frame: &Frame, rings: &[Vec<[f64; 2]>], free: &mut Bits, occupied: &mut Bits) {
+    for ring in rings {
+        fill(frame, std::slice::from_ref(ring), occupied);
+    }
+    free.words.iter_mut().zip(&occupied.words).for_each(|(free, occupied)| *free &= !occupied);
 }
