@@ -24,13 +24,11 @@ from groundplan.survey import Survey
 
 Points = npt.NDArray[np.float64]
 
-#: Kinds that are drawn pale where they are unsure.
-PALE = ("corridor", "rack", "junction", "door")
 JUNCTION_NAMES = {"X": "X junction", "T": "T junction", "L": "L corner", "Y": "Y junction", "end": "Dead end"}
 
 
 def draw_labels(axes: Axes, survey: Survey) -> None:
-    """Draw every label, the large beneath the small; ways, crossings, racks and doors that are unsure are pale."""
+    """Draw every label, the large beneath the small; those that are unsure are pale."""
     kinds = {kind: survey.of_kind(kind) for kind in ("region", "rack", "corridor", "junction", "door", "pillar")}
     names = Names(points_per_metre(axes), on_axes(axes))
     draw_regions(axes, kinds["region"])
@@ -96,7 +94,8 @@ def draw_regions(axes: Axes, regions: Sequence[Label]) -> None:
         holes = [wound(hole, -1) for hole in region.get("holes", [])]
         path = Path.make_compound_path(*(closed(ring) for ring in (wound(region["polygon"], 1), *holes)))
         fill = ink.REGIONS[number % len(ink.REGIONS)]
-        patch = PathPatch(path, facecolor=to_rgba(fill, 0.2), edgecolor=to_rgba(fill, 0.8), lw=0.5, zorder=1)
+        tint, edge = (0.07, 0.4) if is_pale(region) else (0.2, 0.8)
+        patch = PathPatch(path, facecolor=to_rgba(fill, tint), edgecolor=to_rgba(fill, edge), lw=0.5, zorder=1)
         axes.add_patch(patch)
 
 
@@ -110,7 +109,7 @@ def wound(ring: Sequence[Sequence[float]], side: int) -> Points:
 
 def is_pale(label: Label) -> bool:
     """Whether a label is drawn so because it is unsure."""
-    return label["kind"] in PALE and bool(label.get("confidence", 1.0) <= UNSURE)
+    return bool(label.get("confidence", 1.0) <= UNSURE)
 
 
 def draw_racks(axes: Axes, racks: Sequence[Label]) -> None:
@@ -140,10 +139,11 @@ def _draw_ways(axes: Axes, corridors: Sequence[Label], filled: Sequence[Label], 
     """Corridors with so deep a tint, and centre lines as deep as that."""
     # One shape for them all: where two cross, the tint is no deeper.
     tinted = [closed(wound(label["polygon"], 1)) for label in filled if label.get("polygon")]
-    if not corridors or not tinted:
+    if not corridors:
         return
-    fill = to_rgba(ink.CORRIDOR, tint)
-    axes.add_patch(PathPatch(Path.make_compound_path(*tinted), facecolor=fill, edgecolor="none", lw=0, zorder=3))
+    if tinted:
+        fill = to_rgba(ink.CORRIDOR, tint)
+        axes.add_patch(PathPatch(Path.make_compound_path(*tinted), facecolor=fill, edgecolor="none", lw=0, zorder=3))
     outlines = [closed(np.asarray(label["polygon"])).vertices for label in corridors if label.get("polygon")]
     edge = to_rgba(ink.CORRIDOR, 0.6)
     axes.add_collection(LineCollection(outlines, colors=[edge], linewidths=0.4, zorder=3.1), autolim=False)
@@ -239,4 +239,6 @@ def door_direction(door: Label, at: Points, survey: Survey) -> Points:
 def draw_pillars(axes: Axes, pillars: Sequence[Label]) -> None:
     """Small dots."""
     at = np.array([pillar["at"] for pillar in pillars], dtype=np.float64).reshape(-1, 2)
-    axes.scatter(at[:, 0], at[:, 1], s=9, c=ink.PILLAR, edgecolors="white", linewidths=0.4, zorder=8)
+    inks = [("white", ink.PILLAR) if is_pale(pillar) else (ink.PILLAR, "white") for pillar in pillars]
+    fills, edges = zip(*inks, strict=True) if inks else ((), ())
+    axes.scatter(at[:, 0], at[:, 1], s=9, c=fills, edgecolors=edges, linewidths=0.4, zorder=8)
