@@ -30,7 +30,7 @@ KINDS = ("corridor", "junction", "rack", "region", "door", "pillar")
 #: A label: ``kind`` and the keys that the survey's format gives that kind. Plain values, as in the JSON.
 Label = dict[str, Any]
 #: Labels of this confidence or less are shown and spoken of as unsure.
-UNSURE = 0.5
+UNSURE = _core.UNSURE
 
 
 class Stage:

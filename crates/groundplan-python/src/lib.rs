@@ -19,6 +19,8 @@ mod _core {
     use crate::labels::Labels;
     #[pymodule_export]
     use crate::queries::{Locator, Ways};
+    #[pymodule_export]
+    const UNSURE: f64 = groundplan::UNSURE;
     use crate::{convert, labels::from_patterns, layout::Layout, named::Named, parameters};
     use groundplan::{Given, subdivision::Subdivision, sums::FaceSums, walls};
     use groundplan::{TABLE, adjacency, arrangement, directions, gradients, labels, lines, occupancy, radiograms};

@@ -15,6 +15,11 @@ pub fn shared(one: [f64; 2], two: [f64; 2]) -> [f64; 2] {
     [one[0].max(two[0]), one[1].min(two[1])]
 }
 
+/// From the lower end of two to the higher.
+pub fn both(one: [f64; 2], two: [f64; 2]) -> [f64; 2] {
+    [one[0].min(two[0]), one[1].max(two[1])]
+}
+
 /// How much two share; less than nothing by as much as they are apart.
 pub fn overlap(one: [f64; 2], two: [f64; 2]) -> f64 {
     let [low, high] = shared(one, two);
@@ -36,5 +41,6 @@ mod tests {
         assert_eq!(overlap([0.0, 3.0], [3.0, 7.0]), 0.0);
         assert_eq!(overlap([5.0, 7.0], [0.0, 3.0]), -2.0);
         assert_eq!(shared([0.0, 3.0], [1.0, 7.0]), [1.0, 3.0]);
+        assert_eq!(both([0.0, 3.0], [5.0, 7.0]), [0.0, 7.0]);
     }
 }

@@ -59,7 +59,7 @@ pub use grid::{Frame, Grid, State, Table};
 pub use labels::{JunctionKind, Label, Memory, Recall};
 pub use parameters::{ParameterError, Parameters, TABLE, Value};
 pub use sparing::is_large;
-pub use survey::{Given, Survey, Warning, survey, survey_sparingly};
+pub use survey::{Given, Survey, UNSURE, Warning, survey, survey_sparingly};
 
 /// The version of the method, and of all of Groundplan.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

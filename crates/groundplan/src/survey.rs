@@ -195,7 +195,7 @@ impl Divided {
 }
 
 /// The evidence does not decide a label that is no surer than this.
-const UNSURE: f64 = 0.5;
+pub const UNSURE: f64 = 0.5;
 
 /// A warning where the evidence does not decide what something is.
 fn undecided(labels: &[Label], confidence: &[f64]) -> Option<Warning> {

@@ -6,7 +6,7 @@ use super::racks::{Crossings, Row, SAME, lines_behind, without};
 use super::turned::Turned;
 use super::whole::{RIM, trimmed};
 use crate::bands::flat_map_each;
-use crate::ends::wider;
+use crate::ends::{sorted, wider};
 
 /// Behind a wall from so far to so far off, metres, more than this share is not free.
 const BEYOND: [f64; 2] = [0.2, 0.7];
@@ -43,7 +43,7 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], known: &[R
             }
             for (_, line) in lines_behind(view, own, side) {
                 let far = view.offsets[line];
-                let across = [own.min(far), own.max(far)];
+                let across = sorted([own, far]);
                 let row = |along| Row { direction: strip.direction, along, across, between: None };
                 let rows = crossings.uncrossed(strip.direction, across, open.clone()).into_iter().map(row);
                 let rows = rows.filter_map(|row| trimmed(view, &row, before(&row, side)));

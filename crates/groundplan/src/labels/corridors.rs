@@ -52,6 +52,11 @@ impl Strip {
         self.length() < ALONE.1.max(ALONE.0 * self.width())
     }
 
+    /// True when another is as wide but for a share of the wider.
+    pub fn is_as_wide(&self, other: &Self, share: f64) -> bool {
+        (self.width() - other.width()).abs() <= share * self.width().max(other.width())
+    }
+
     /// Its direction and its places, as [`placed`] takes them.
     pub fn place(&self) -> (usize, [f64; 2], [f64; 2]) {
         (self.direction, self.along, self.across)

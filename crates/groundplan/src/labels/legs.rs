@@ -9,7 +9,7 @@ use super::grounds::on_map;
 use super::near::Near;
 use super::racks::Row;
 use super::uprights;
-use crate::ends::overlap;
+use crate::ends::{both, overlap};
 use crate::grid::State;
 use std::collections::BTreeMap;
 
@@ -233,7 +233,7 @@ fn back_to_back(mut racks: Vec<Rack>) -> Vec<Rack> {
         };
         let near = whole.iter_mut().rev().take_while(|other| row.across[0] - other.row.across[0] <= AISLE);
         if let Some(Rack { row: other, .. }) = near.into_iter().find(is_back) {
-            other.along = [other.along[0].min(row.along[0]), other.along[1].max(row.along[1])];
+            other.along = both(other.along, row.along);
             other.across[1] = other.across[1].max(row.across[1]);
         } else {
             whole.push(rack);

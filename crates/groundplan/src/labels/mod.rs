@@ -7,6 +7,7 @@ mod beside;
 mod blocks;
 mod columns;
 mod confidence;
+mod connected;
 mod corridors;
 mod crossed;
 mod faced;

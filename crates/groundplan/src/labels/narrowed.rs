@@ -5,7 +5,7 @@ use super::beside::Beside;
 use super::corridors::Strip;
 use super::racks::{DEPTH, Row, SAME};
 use super::turned::Turned;
-use crate::ends::{around, overlap, shared, wider};
+use crate::ends::{around, both, overlap, shared, wider};
 
 /// Racks leave no less of a way than this share of its width, or what they stand in is none along it.
 const LEFT: f64 = 0.5;
@@ -32,9 +32,7 @@ pub fn past(views: &[Turned], strips: &[Strip], racks: &[Row], reached: &[[f64; 
                 let beside = wider(left, DEPTH.0);
                 let near = placed.touching(strip.along, beside).into_iter().map(|n| places[n]);
                 let near = near.filter(|[_, across]| beside[0] <= across[1] && across[0] <= beside[1]);
-                let ends = |[low, high]: [f64; 2], [from, to]: [f64; 2]| [low.min(from), high.max(to)];
-                let [from, to] = near.map(|[along, _]| along).fold(*reached, ends);
-                strip.along = shared(strip.along, [from, to]);
+                strip.along = shared(strip.along, near.map(|[along, _]| along).fold(*reached, both));
             }
         }
     }

@@ -2,6 +2,7 @@
 //! between it and another.
 
 use super::beside::Beside;
+use super::connected::ALIKE;
 use super::corridors::Strip;
 use super::racks::{self, DEPTH};
 use super::runs::{close, runs};
@@ -15,9 +16,6 @@ const SIDED: f64 = 0.6;
 const SIDE: (f64, f64) = (0.1, 0.25);
 /// Things are parted by more than so many metres.
 const PARTED: f64 = 0.3;
-/// Ways are alike but for this share of their widths, and one that goods hide in part runs beside the other for as much of
-/// the shorter.
-const ALIKE: f64 = 0.2;
 
 /// True when something that is not free stands along both sides of a strip.
 pub fn is_sided(view: &Turned, strip: &Strip) -> bool {
@@ -30,14 +28,13 @@ pub fn is_sided(view: &Turned, strip: &Strip) -> bool {
     })
 }
 
-/// True when another that is like it runs beside a strip, with a row between them of which several pieces stand, and ways
+/// True when another that is like it runs beside a strip, as far as goods do not hide the shorter of the two, with a row between them of which several pieces stand, and ways
 /// lead between these from the one to the other: be there walls at all ends, rooms are not so. Of all it is known where they
 /// lie.
 pub fn is_at_row(view: &Turned, strips: &[Strip], placed: &[Beside], n: usize) -> bool {
     let own = &strips[n];
     let is_like = |other: &&Strip| {
-        let (one, two) = (own.width(), other.width());
-        (one - two).abs() <= ALIKE * one.max(two)
+        own.is_as_wide(other, ALIKE)
             && overlap(own.along, other.along) >= (1.0 - ALIKE) * own.length().min(other.length())
     };
     let near = placed[own.direction].touching(own.along, wider(own.across, DEPTH.1));

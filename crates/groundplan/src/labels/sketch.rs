@@ -1,9 +1,10 @@
 //! II-E before the map is divided into faces: corridors first, junctions where they meet, rows between them, and all
 //! that may be a door.
 
-use super::beside::{Beside, placed};
+use super::beside::placed;
 use super::blocks::Standing;
-use super::corridors::{self, ALONE, Strip};
+use super::connected;
+use super::corridors::{self, Strip};
 use super::crossed;
 use super::faced;
 use super::gates;
@@ -17,29 +18,12 @@ use super::narrowed;
 use super::racks::{self, Row};
 use super::ragged::{self, Ways};
 use super::rooms::{Bar, Space};
-use super::sided;
 use super::turned::Turned;
 use super::whole;
 use super::widths;
 use super::{Evidence, Ground};
 use crate::bands::{Later, Side, each, map_each};
-use crate::ends::{overlap, shared};
-
-/// A corridor that meets no other and is shorter than one alone is so long, metres, and so many others run beside it, no
-/// more than a rack away, that are as wide and as long but for this share.
-const RECURS: f64 = 3.5;
-const OTHERS: usize = 2;
-const ALIKE: f64 = 0.2;
-/// One that is shut at both its ends, be it with a door, is so many times as long as wide: else it is a room. And where
-/// no such others run beside it something stands along both its sides: else it is what furniture leaves of a room.
-const SHUT: f64 = 4.5;
-/// A corridor that meets one other goes on beyond it, on one side for so many times its width and so far, metres, or on
-/// both together for as many times and so far: or it is a niche at the other's side.
-const NICHE: (f64, f64) = (1.5, 2.5);
-const NICHES: (f64, f64) = (2.2, 4.0);
-/// Two niches face each other across a corridor where both together are less than this share of its length, the one is no
-/// less than that share of the other, neither goes on as far as both must, and both are shut.
-const FACING: f64 = 0.5;
+use crate::ends::{both, wider};
 
 /// What the map shows without its faces.
 pub struct Sketch {
@@ -185,17 +169,13 @@ impl Plan {
     /// From where to where each way leads, along: to what it meets, and to walls at its ends.
     fn reached(&self, views: &[Turned]) -> Vec<[f64; 2]> {
         let mut reached = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.strips.len()];
-        let mut add = |n: usize, from: f64, to: f64| {
-            let [low, high] = reached[n];
-            reached[n] = [low.min(from), high.max(to)];
-        };
+        let mut add = |n: usize, place: f64, reach: f64| reached[n] = both(reached[n], wider([place; 2], reach));
         for meeting in &self.meetings {
             for &n in &meeting.corridors {
-                let (u, reach) = (views[self.strips[n].direction].place(meeting.at)[0], reach(meeting, n));
-                add(n, u - reach, u + reach);
+                add(n, views[self.strips[n].direction].place(meeting.at)[0], connected::reach(meeting, n));
             }
         }
-        self.ends.iter().for_each(|&(n, _, place)| add(n, place, place));
+        self.ends.iter().for_each(|&(n, _, place)| add(n, place, 0.0));
         reached
     }
 
@@ -213,13 +193,13 @@ impl Plan {
     }
 
     fn new(views: &[Turned], strips: Vec<Strip>, threads: usize) -> Self {
-        let (mut strips, meetings) = connected(views, strips, threads);
+        let (mut strips, meetings) = connected::of(views, strips, threads);
         // A corridor goes on to what it meets, and there it may be what another one meets.
         let longer = extents(views, &strips, &meetings);
         for (strip, along) in strips.iter_mut().zip(longer) {
-            strip.along = [strip.along[0].min(along[0]), strip.along[1].max(along[1])];
+            strip.along = both(strip.along, along);
         }
-        let (strips, meetings) = connected(views, strips, threads);
+        let (strips, meetings) = connected::of(views, strips, threads);
         let mut extents = extents(views, &strips, &meetings);
         let ends = junctions::ends(views, &strips, &meetings);
         for &(n, side, place) in &ends {
@@ -228,119 +208,6 @@ impl Plan {
         let rows = racks::find(views, &strips, &extents);
         Self { strips, meetings, ends, extents, rows, racks: Vec::new() }
     }
-}
-
-/// A strip that leads nowhere is a niche: it goes, and what met it is judged again. When none is left, so do two niches
-/// that face each other across the only corridor that they meet.
-fn connected(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Strip>, Vec<Meeting>) {
-    loop {
-        let placed = placed(views, strips.iter().map(Strip::place));
-        let meetings = junctions::find(views, &strips, threads);
-        let met = junctions::of_each(&meetings, strips.len());
-        let is_shut = |n: usize| (0..2).all(|side| junctions::is_shut(views, &strips[n], side));
-        let goes_on =
-            |n: usize, metres: f64, (widths, least): (f64, f64)| metres >= least.max(widths * strips[n].width());
-        let leads = |n: usize| {
-            let is_niche = |&m: &usize| {
-                let [one, two] = arms(views, &strips, &meetings[m], n);
-                !goes_on(n, one.max(two).min(one + two + reach(&meetings[m], n)), NICHE)
-                    && !goes_on(n, one + two, NICHES)
-            };
-            let is_long = |widths: f64| strips[n].length() >= RECURS.max(widths * strips[n].width());
-            let is_one_of_many = |apart: (f64, f64)| alike(&strips, &placed, n, apart, |_| true) >= OTHERS;
-            let is_one_of = |widths: f64, apart: (f64, f64)| is_long(widths) && is_one_of_many(apart);
-            // Beside a rack two do that open into the same way.
-            let is_one_of_two = |m: usize| {
-                let is_met = |way: &usize| *way != n && meetings[m].corridors.contains(way);
-                let opens_there = |other: usize| {
-                    other == n
-                        || met[other].iter().any(|&at| meetings[at].corridors.iter().any(|c| *c != other && is_met(c)))
-                };
-                is_long(NICHE.0) && alike(&strips, &placed, n, racks::DEPTH, opens_there) > 0
-            };
-            let is_aisle = || is_one_of(ALONE.0, (0.0, racks::DEPTH.1)) || is_one_of(NICHE.0, racks::DEPTH);
-            match met[n].len() {
-                0 | 1 if racks::is_within_row(&strips, &placed, n) => false,
-                0 if is_shut(n) => {
-                    let is_one_of_many = || is_one_of_many((0.0, racks::DEPTH.1));
-                    let is_sided = || sided::is_sided(&views[strips[n].direction], &strips[n]);
-                    let is_at_row = || sided::is_at_row(&views[strips[n].direction], &strips, &placed, n);
-                    strips[n].length() >= SHUT * strips[n].width() && (is_one_of_many() || is_sided() || is_at_row())
-                }
-                0 if strips[n].length() >= ALONE.1.max(ALONE.0 * strips[n].width()) => true,
-                0 => is_aisle(),
-                1 => !met[n].iter().any(is_niche) || is_aisle() || is_one_of_two(met[n][0]),
-                _ => true,
-            }
-        };
-        let faces = |n: usize| {
-            let &[m] = &met[n][..] else { return false };
-            let [one, two] = arms(views, &strips, &meetings[m], n);
-            let others = meetings[m].corridors.iter().filter(|&&other| other != n);
-            let longest = others.map(|&other| strips[other].length()).fold(0.0, f64::max);
-            strips[n].length() < FACING * longest
-                && one.min(two) >= FACING * one.max(two)
-                && one.max(two) < NICHES.1
-                && is_shut(n)
-        };
-        let mut stays: Vec<bool> = (0..strips.len()).map(leads).collect();
-        if !stays.contains(&false) {
-            stays = (0..strips.len()).map(|n| !faces(n)).collect();
-        }
-        if !stays.contains(&false) {
-            return (strips, meetings);
-        }
-        // What is shut may be so by walls that its sides do not reach: then it is judged anew without the way to them.
-        let shorter = |n: usize| {
-            let Strip { along, held, .. } = strips[n];
-            let short = shared(along, held);
-            let is_so = !stays[n] && met[n].is_empty() && short != along && short[0] < short[1] && is_shut(n);
-            is_so.then_some((n, short))
-        };
-        let shorter: Vec<_> = (0..strips.len()).filter_map(shorter).collect();
-        for (n, short) in shorter {
-            strips[n].along = short;
-            stays[n] = true;
-        }
-        let mut flags = stays.into_iter();
-        strips.retain(|_| flags.next().unwrap_or(false));
-    }
-}
-
-/// How many others that are alike run beside a strip, one after another, so far apart, metres, of those that count and lie
-/// no farther off than [`OTHERS`] of them take. Where they may not touch there are racks between them.
-fn alike(strips: &[Strip], placed: &[Beside], n: usize, apart: (f64, f64), counts: impl Fn(usize) -> bool) -> usize {
-    let own = &strips[n];
-    let alike = |one: f64, two: f64| (one - two).abs() <= ALIKE * one.max(two);
-    // Goods hide more of one aisle beside a rack than of the next.
-    let whole = if apart.0 > 0.0 { f64::min } else { f64::max };
-    let is_like = |other: &&Strip| {
-        other.direction == own.direction
-            && alike(own.width(), other.width())
-            && overlap(own.along, other.along) >= (1.0 - ALIKE) * whole(own.length(), other.length())
-    };
-    let reach = OTHERS as f64 * (own.width() + apart.1);
-    let around = placed[own.direction].touching(own.along, [own.middle() - reach, own.middle() + reach]);
-    let mut sides: Vec<[f64; 2]> =
-        around.into_iter().filter(|&m| counts(m)).map(|m| &strips[m]).filter(is_like).map(|s| s.across).collect();
-    sides.sort_by(|one, two| (one[0] + one[1]).total_cmp(&(two[0] + two[1])));
-    let at = sides.partition_point(|side| side[0] + side[1] < own.across[0] + own.across[1]);
-    let is_next = |pair: &&[[f64; 2]]| (apart.0..=apart.1).contains(&(pair[1][0] - pair[0][1]));
-    let above = sides[at..].windows(2).take_while(is_next).count();
-    let below = sides[..(at + 1).min(sides.len())].windows(2).rev().take_while(is_next).count();
-    above + below
-}
-
-/// Half of a strip's piece within a junction, metres along the strip.
-fn reach(meeting: &Meeting, n: usize) -> f64 {
-    meeting.reach[usize::from(meeting.corridors[0] != n)]
-}
-
-/// How far a strip goes on beyond a junction on either side, metres.
-fn arms(views: &[Turned], strips: &[Strip], meeting: &Meeting, n: usize) -> [f64; 2] {
-    let (strip, reach) = (&strips[n], reach(meeting, n));
-    let at = views[strip.direction].place(meeting.at)[0];
-    [at - reach - strip.along[0], strip.along[1] - at - reach]
 }
 
 /// Where each corridor begins and ends, along: its walled part, and the middle of the junction at each end that it has
@@ -362,7 +229,7 @@ fn extents(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<[f64
     }
     for (n, _, at) in all() {
         let u = place(n, at);
-        extents[n] = [extents[n][0].min(u), extents[n][1].max(u)];
+        extents[n] = both(extents[n], [u; 2]);
     }
     extents
 }

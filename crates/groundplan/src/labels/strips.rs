@@ -14,7 +14,7 @@ use super::sketch::{Plan, Sketch};
 use super::turned::Turned;
 use super::{Division, Evidence, JunctionKind, Label, outline};
 use crate::bands::side_by_side;
-use crate::ends::wider;
+use crate::ends::{sorted, wider};
 use crate::grid::{State, tidy};
 use std::collections::BTreeSet;
 
@@ -34,7 +34,7 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
         .chain(ends.iter().map(|&(n, side, place)| {
             let (strip, view) = (&strips[n], &views[strips[n].direction]);
             let inwards = if side == 0 { strip.width() } else { -strip.width() };
-            let along = [place.min(place + inwards), place.max(place + inwards)];
+            let along = sorted([place, place + inwards]);
             let at = view.to_map([place, strip.middle()]);
             (JunctionKind::End, rectangle(view, along, strip.across), at, vec![n])
         }))
