@@ -63,7 +63,7 @@ def every_label() -> list[dict[str, Any]]:
         {"kind": "corridor", "faces": [0], "polygon": square, "axis": axis, "width": 1.0, "name": "A01"},
         {"kind": "rack", "faces": [0], "polygon": square, "axis": axis, "width": 1.0},
         {"kind": "door", "at": [4.0, 3.0], "width": 0.9, "between": [0, 1]},
-        {"kind": "pillar", "at": [2.5, 2.5]},
+        {"kind": "pillar", "at": [7.0, 3.0]},
         *junctions,
     ]
 
