@@ -10,10 +10,16 @@ use std::ops::Range;
 
 /// Rasters of more pixels than this are looked at piece by piece.
 const WHOLE: usize = 1 << 24;
-/// So many rows at a time.
+/// So many rows at a time, but without threads all where there are no more pixels than this.
 const ROWS: usize = 128;
+const AT_ONCE: usize = 1 << 20;
 /// So many runs of a row are worth a thread's while.
 const TOGETHER: usize = 1 << 13;
+/// Where squares fit in 16 bits so many pixels side by side are looked at together: what lies so many steps more to either
+/// side, before it is asked whether something farther off may be nearer. Beyond the last of these numbers nothing is.
+const LANES: usize = 32;
+const STEPS: usize = 4;
+const FARTHEST: usize = 46 * STEPS;
 
 /// The clearances of a raster: kept where they are few, else made again whenever they are asked for.
 pub struct Clearance(Option<Rows>);
@@ -112,8 +118,8 @@ fn distances(squared: &[u32]) -> f64 {
 fn whole(raster: &Raster, threads: usize) -> Rows {
     let (width, height, columns) = (raster.width, raster.height, 0..raster.width);
     let threads = worth(raster.len(), threads);
-    // Without threads one band, for what bears on a band from beyond takes a pass of its own.
-    let band = if threads <= 1 { height } else { height.div_ceil(4 * threads).max(ROWS) };
+    // What bears on a band from beyond takes a pass of its own; but a band stays in the processor's cache.
+    let band = if threads <= 1 && raster.len() <= AT_ONCE { height } else { ROWS };
     let bands: Vec<Range<usize>> = (0..height).step_by(band).map(|y| y..(y + band).min(height)).collect();
     let above = above(raster, &bands);
     let below = if bands.len() == 1 { vec![vec![0; width]] } else { below(raster, &bands) };
@@ -241,7 +247,11 @@ fn heights(
 /// From the heights of rows to the squared distances.
 fn square(rows: &mut [u32], width: usize) {
     let (mut seats, mut heights) = (Vec::new(), Vec::with_capacity(width));
+    let mut squares = vec![0; FARTHEST + width + LANES + FARTHEST];
     for row in rows.chunks_mut(width) {
+        if square_low(row, &mut squares) {
+            continue;
+        }
         heights.clear();
         heights.extend_from_slice(row);
         // Within a run of free pixels only the run and its two ends count.
@@ -253,6 +263,42 @@ fn square(rows: &mut [u32], width: usize) {
             next = end + 1;
         }
     }
+}
+
+/// The same of a row whose squares fit in 16 bits, or false: of each pixel its own square, or what lies to either side, as
+/// long as something so far off can be nearer. `squares` is room for theirs, with zeros at both ends: what is not free is
+/// zero, and what lies beyond it never the nearest.
+fn square_low(row: &mut [u32], squares: &mut [i16]) -> bool {
+    if row.iter().fold(0, |bits, height| bits | height) > u8::MAX.into() {
+        return false;
+    }
+    let mut least = 0;
+    for (to, &height) in squares[FARTHEST..].iter_mut().zip(&*row) {
+        *to = (height as i16).wrapping_mul(height as i16);
+        least = least.min(*to);
+    }
+    if least < 0 {
+        return false;
+    }
+    for (n, to) in row.chunks_mut(LANES).enumerate() {
+        let at = FARTHEST + n * LANES;
+        let mut least = [0; LANES];
+        least.copy_from_slice(&squares[at..at + LANES]);
+        let mut off = 1;
+        while off * off < least.iter().fold(0, |most, &own| most.max(own)) as usize {
+            let near = &squares[at + 1 - off - STEPS..at - 1 + off + STEPS + LANES];
+            for step in 0..STEPS {
+                let (left, right) = (&near[STEPS - 1 - step..][..LANES], &near[2 * off + STEPS - 1 + step..][..LANES]);
+                let squared = i16::try_from((off + step).pow(2)).unwrap_or(i16::MAX);
+                for ((own, left), right) in least.iter_mut().zip(left).zip(right) {
+                    *own = (*left).min(*right).saturating_add(squared).min(*own);
+                }
+            }
+            off += STEPS;
+        }
+        to.iter_mut().zip(least).for_each(|(to, own)| *to = own as u32);
+    }
+    true
 }
 
 /// The lower envelope of the parabolas over some heights; `seats` is room for the places of those that are in it, and
@@ -283,5 +329,35 @@ fn envelope(heights: &[u32], squared: &mut [u32], seats: &mut Vec<(i64, i64)>) {
         *to = own as u32;
         (own, more) = (own + more, more + 2);
         after = after.map(|(square, step)| (square + step, step + 2));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_squared_as_if_every_pixel_were_held_against_all_others() {
+        let mut random = 7u32;
+        let mut next = |below: u32| {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (random >> 8) % below
+        };
+        // From low rows to those whose squares do not fit in 16 bits.
+        for (width, top) in [(40, 4), (500, 40), (500, 182), (700, 183), (700, 256), (700, 400), (35, 1000)] {
+            let mut row: Vec<u32> = (0..width).map(|_| if next(50) == 0 { 0 } else { 1 + next(top - 1) }).collect();
+            (row[0], row[width - 1]) = (0, 0);
+            // And one that is as high as it may be nearly everywhere.
+            let mut even = vec![top - 1; width];
+            (even[0], even[width - 1]) = (0, 0);
+            let heights = [row, even];
+            let mut squared = heights.concat();
+            square(&mut squared, width);
+            for (row, squared) in heights.iter().zip(squared.chunks(width)) {
+                let places = || row.iter().enumerate().map(|(x, height)| (x, height.pow(2)));
+                let least = |x: usize| places().map(|(other, square)| square + x.abs_diff(other).pow(2) as u32).min();
+                assert!(squared.iter().enumerate().all(|(x, own)| least(x) == Some(*own)), "{width} {top}");
+            }
+        }
     }
 }
