@@ -6,6 +6,7 @@ use super::turned::Turned;
 use crate::ends::sorted;
 use crate::gradients::SPECK;
 use crate::on_line::OnLine;
+use std::ops::Range;
 
 /// Lags are counted in steps of this many metres, between the shortest and the longest that are looked at.
 const STEP: f64 = 0.05;
@@ -33,20 +34,10 @@ const ALONG: [f64; 2] = [0.15, 0.05];
 /// Steps to either side of a lag over which it is the strongest.
 const TOP: usize = 4;
 
-/// A speck on a line.
+/// The columns of a speck on a line, and what is not free on either side of the line before its column and up to its end.
 struct Speck {
-    /// In steps along the line.
-    place: i32,
-    /// The column that it is in, and what is not free on either side of the line before that and up to its end.
     column: usize,
     sums: [[f64; 2]; 2],
-}
-
-impl Speck {
-    /// Steps to one that follows.
-    fn lag(&self, other: &Self) -> usize {
-        (other.place - self.place) as usize
-    }
 }
 
 /// Distance from post to post along the lines of the view's direction, metres, where there is a pattern: the first
@@ -55,27 +46,11 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     let last = (LAGS.1 / STEP) as usize;
     let first = (LAGS.0 / STEP) as usize;
     let lags = 2 * (last + BASE) + 1;
-    let (mut sums, mut faces) = (vec![0.0; lags], vec![0.0; lags]);
-    for (offset, places) in specks(evidence, view) {
-        if places.len() < FEWEST {
-            continue;
-        }
-        let beside = [-1.0, 1.0].map(|side| taken(view, offset, side));
-        let speck = |&place: &i32| {
-            let column = view.column(view.start[0] + f64::from(place) * STEP);
-            Speck { place, column, sums: [column, column + 1].map(|n| beside.each_ref().map(|sums| sums[n])) }
-        };
-        let specks: Vec<Speck> = places.iter().map(speck).collect();
-        let mut next = 0;
-        for one in &specks {
-            next += specks[next..].iter().take_while(|other| one.lag(other) < first - BASE).count();
-            for other in specks[next..].iter().take_while(|other| one.lag(other) < lags) {
-                sums[one.lag(other)] += 1.0;
-                if is_face(one, other) {
-                    faces[one.lag(other)] += 1.0;
-                }
-            }
-        }
+    let mut lines = specks(evidence, view);
+    lines.retain(|(_, places)| places.len() >= FEWEST);
+    let mut sums = vec![0.0; lags];
+    for (_, places) in &lines {
+        pairs(places, first - BASE..lags, |lag, _| sums[lag] += 1.0);
     }
     // What lies around a lag is chance. How many pairs are more than that, and in its deviations.
     let excess = |sums: &[f64], times: usize, lag: usize| {
@@ -87,10 +62,28 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
         let chance = (all - near) / (many - few) * few;
         (near - chance, (near - chance) / libm::sqrt(chance + 1.0))
     };
-    // What recurs does so twice as far off too.
+    // What recurs does so twice as far off too; where nothing does it need not be asked whether it is along faces.
+    let all: Vec<[(f64, f64); 2]> = (first..=last).map(|lag| [1, 2].map(|times| excess(&sums, times, lag))).collect();
+    if all.iter().all(|[once, twice]| once.1.min(twice.1) < CONTRAST) {
+        return None;
+    }
+    let mut faces = vec![0.0; lags];
+    for (offset, places) in &lines {
+        let beside = [-1.0, 1.0].map(|side| taken(view, *offset, side));
+        let speck = |&place: &i32| {
+            let column = view.column(view.start[0] + f64::from(place) * STEP);
+            Speck { column, sums: [column, column + 1].map(|n| beside.each_ref().map(|sums| sums[n])) }
+        };
+        let specks: Vec<Speck> = places.iter().map(speck).collect();
+        pairs(places, first - BASE..lags, |lag, [one, other]| {
+            if is_face(&specks[one], &specks[other]) {
+                faces[lag] += 1.0;
+            }
+        });
+    }
     let found: Vec<(f64, f64)> = (first..=last)
-        .map(|lag| {
-            let all = [1, 2].map(|times| excess(&sums, times, lag));
+        .zip(all)
+        .map(|(lag, all)| {
             let is_along = (0..2).all(|n| excess(&faces, n + 1, lag).0 >= ALONG[n] * all[n].0);
             let [once, twice] = all;
             (once.0, if is_along { once.1.min(twice.1) } else { 0.0 })
@@ -101,6 +94,22 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     let most = tops.iter().map(|&n| found[n].0).fold(0.0, f64::max);
     let pitch = first + tops.into_iter().find(|&n| found[n].0 >= FUNDAMENTAL * most)?;
     Some(between_steps(&sums, pitch) * STEP)
+}
+
+/// Calls `visit` with the lag of each pair of some places that lie so far apart, ascending, and which two they are.
+fn pairs(places: &[i32], lags: Range<usize>, mut visit: impl FnMut(usize, [usize; 2])) {
+    let mut next = 0;
+    for (n, one) in places.iter().enumerate() {
+        let lag = |other: usize| places.get(other).map(|other| (other - one) as usize);
+        while lag(next).is_some_and(|lag| lag < lags.start) {
+            next += 1;
+        }
+        let mut other = next;
+        while let Some(lag) = lag(other).filter(|lag| *lag < lags.end) {
+            visit(lag, [n, other]);
+            other += 1;
+        }
+    }
 }
 
 /// Where the pairs about a lag lie in the middle, in steps; in parts of a step, so that what changes in a corner of a map
