@@ -349,15 +349,19 @@ impl<'a> Joining<'a> {
         let [ux, uy] = self.bars[*bar].heading();
         let [x, y] = self.raster.place(pixels[pixels.len() / 2]);
         let deepest = self.raster.pixels(DEPTH);
-        // Mostly the piece is the one that was asked for last.
+        // Mostly the piece is the one that was asked for last, and along a row the run too.
+        let mut run = Run::new(&(0..0), 0);
         let mut last = (0, false);
         // Walls' thickness in a doorway counts only for the doorway's own piece, `own`.
         let mut is_in = |place: [f64; 2], own: Option<u32>| {
             let pixel = self.raster.at(place)?;
-            let number = self.pieces.at(pixel);
-            if number == 0 {
-                return self.raster.free.get(pixel).then_some(number);
+            if !run.pixels().contains(&pixel) {
+                let Some(&own) = self.pieces.run_at(pixel) else {
+                    return self.raster.free.get(pixel).then_some(0);
+                };
+                run = own;
             }
+            let number = run.number;
             if number != last.0 {
                 last = (number, self.sets.name(number) == set);
             }
@@ -369,14 +373,19 @@ impl<'a> Joining<'a> {
         while depth <= deepest.max(STEP) && widest < enough {
             let [px, py] = [x - uy * side * depth, y + ux * side * depth];
             if let Some(own) = is_in([px, py], None) {
-                let mut reach = |way: f64| -> f64 {
+                // How far it goes on, or less where that is not so far that it counts.
+                let mut reach = |way: f64, counts: f64| -> f64 {
+                    let mut goes_on = |n: f64| is_in([px + way * ux * n, py + way * uy * n], Some(own)).is_some();
                     let mut n = 1.0;
-                    while n <= enough && is_in([px + way * ux * n, py + way * uy * n], Some(own)).is_some() {
-                        n += 1.0;
+                    if counts < 1.0 || goes_on(counts) {
+                        while n <= enough && goes_on(n) {
+                            n += 1.0;
+                        }
                     }
                     n
                 };
-                widest = widest.max(reach(1.0) + reach(-1.0) - 1.0);
+                let ahead = reach(1.0, 0.0);
+                widest = widest.max(ahead + reach(-1.0, widest + 1.0 - ahead) - 1.0);
             } else if depth > 2.0 * STEP {
                 break;
             }

@@ -60,9 +60,14 @@ impl Runs {
 
     /// A pixel's number.
     pub fn at(&self, pixel: usize) -> u32 {
+        self.run_at(pixel).map_or(0, |run| run.number)
+    }
+
+    /// The run that holds a pixel.
+    pub fn run_at(&self, pixel: usize) -> Option<&Run> {
         let first = self.index[pixel / STEP] as usize;
         let run = self.all[first..].iter().find(|run| run.to as usize > pixel);
-        run.filter(|run| run.from as usize <= pixel).map_or(0, |run| run.number)
+        run.filter(|run| run.from as usize <= pixel)
     }
 
     /// Pieces of pixels of one number that are joined side by side: the number of each run's, from 1, in the order of
