@@ -5,7 +5,7 @@ use crate::bits::{self, WORD, lowest};
 use crate::directions::Directions;
 use crate::ends::{around, sorted};
 use crate::gradients::Gradients;
-use crate::grid::{Frame, tidy};
+use crate::grid::{Frame, rounded, tidy};
 use crate::lines::Lines;
 use crate::on_line::OnLine;
 use crate::parameters::Parameters;
@@ -143,7 +143,7 @@ impl<'a> Coverage<'a> {
                 });
                 let [from, to] = sorted(ends);
                 // Whole bins within; a shorter edge is judged by the bin that its middle lies in.
-                let (mut first, mut last) = (from.round() as usize, to.round() as usize);
+                let (mut first, mut last) = (rounded(from) as usize, rounded(to) as usize);
                 if first == last {
                     first = f64::midpoint(from, to) as usize;
                     last = first + 1;

@@ -7,7 +7,7 @@
 
 use crate::bands::{BAND_ROWS, map_bands};
 use crate::bits::{WORD, word_of};
-use crate::grid::{Grid, State, undirected};
+use crate::grid::{Grid, State, rounded, undirected};
 use crate::parameters::Parameters;
 use crate::pixels::Pixels;
 use std::ops::Range;
@@ -292,6 +292,6 @@ fn row_gradients(edges: &Edges, bits: &Bits, y: usize, among: &Range<usize>, out
         let magnitude = if spread > 0.0 { split / spread } else { 0.0 };
         out.pixels.push([column, y as u32]);
         out.angles.push(undirected(0.5 * libm::atan2((2 * xy) as f64, (xx - yy) as f64)) as f32);
-        out.magnitudes.push((magnitude * 255.0).round() as u8);
+        out.magnitudes.push(rounded(magnitude * 255.0) as u8);
     }
 }

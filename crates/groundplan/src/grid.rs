@@ -212,14 +212,17 @@ pub fn turned(angle: f64) -> f64 {
 /// Rounded to micrometres (or millionths): finer than any map means, and short to write.
 #[must_use]
 pub fn tidy(value: f64) -> f64 {
-    // As `f64::round` does, without the call that it is on machines that may lack the instruction, and without a
-    // branch that nobody can foretell: this is asked of every coordinate of millions.
-    let micro = value * 1e6;
-    let whole = micro as i64 as f64;
-    let rest = micro - whole;
+    rounded(value * 1e6) / 1e6 + 0.0
+}
+
+/// As `f64::round` does, without the call that it is on machines that may lack the instruction, and without a branch that
+/// nobody can foretell: this is asked of every coordinate of millions. What is rounded to zero has no sign.
+pub(crate) fn rounded(value: f64) -> f64 {
+    let whole = value as i64 as f64;
+    let rest = value - whole;
     let rounded = whole + f64::from(u8::from(rest >= 0.5)) - f64::from(u8::from(rest <= -0.5));
     // From 2^52 on every float is whole.
-    (if micro.abs() < 4_503_599_627_370_496.0 { rounded } else { micro }) / 1e6 + 0.0
+    if value.abs() < 4_503_599_627_370_496.0 { rounded } else { value }
 }
 
 /// An angle rounded to a billionth of a radian: a micrometre at a kilometre.

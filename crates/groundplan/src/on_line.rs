@@ -6,7 +6,8 @@ use std::ops::Range;
 pub struct OnLine<'a> {
     offsets: &'a [f64],
     near: f64,
-    /// Places across are told apart in steps as long as that, from here on.
+    /// Places across are told apart in steps as long as that, so many to a metre or a pixel, from here on.
+    per: f64,
     start: f64,
     /// For each step the lines that a place in it may lie on: from, to.
     steps: Vec<[u32; 2]>,
@@ -19,7 +20,7 @@ impl<'a> OnLine<'a> {
     /// From offsets in ascending order.
     pub fn new(offsets: &'a [f64], near: f64) -> Self {
         let start = offsets.first().map_or(0.0, |first| first - 2.0 * near);
-        let mut made = Self { offsets, near, start, steps: Vec::new() };
+        let mut made = Self { offsets, near, per: 1.0 / near, start, steps: Vec::new() };
         for (n, offset) in (0..).zip(offsets) {
             let from = made.step(offset - near) - OVERLAP;
             let to = made.step(offset + near) + OVERLAP;
@@ -30,7 +31,7 @@ impl<'a> OnLine<'a> {
     }
 
     fn step(&self, place: f64) -> f64 {
-        (place - self.start) / self.near
+        (place - self.start) * self.per
     }
 
     /// The lines that a place across lies on.

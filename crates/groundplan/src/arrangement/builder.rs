@@ -291,30 +291,43 @@ impl Builder {
             chain.extend(sequence.iter().map(|(vertex, _)| vertex));
             return;
         }
-        let mut heads = vec![0usize; sequences.len()];
+        // What is left of each sequence, and where the first of it lies along the line.
+        let place = |(vertex, _): (u32, u32)| {
+            let place = self.vertices[vertex as usize][usize::from(!by_x)];
+            if forwards { place } else { -place }
+        };
+        let mut heads: Vec<_> = sequences.iter().filter_map(|s| Some((place(*s.first()?), s.as_slice()))).collect();
         let mut last: Option<(u32, u32)> = None;
-        loop {
-            let mut best: Option<(usize, (u32, u32))> = None;
-            for (s, sequence) in sequences.iter().enumerate() {
-                let Some(&candidate) = sequence.get(heads[s]) else {
-                    continue;
+        let mut same = Vec::new();
+        while !heads.is_empty() {
+            let mut best = 0;
+            for s in 1..heads.len() {
+                let (one, held) = (heads[s], heads[best]);
+                let is_sooner = if (one.0 - held.0).abs() > TIE_PIXELS {
+                    one.0 < held.0
+                } else {
+                    self.order(n, by_x, forwards, one.1[0], held.1[0]) == Ordering::Less
                 };
-                let sooner =
-                    best.is_none_or(|(_, held)| self.order(n, by_x, forwards, candidate, held) == Ordering::Less);
-                if sooner {
-                    best = Some((s, candidate));
+                if is_sooner {
+                    best = s;
                 }
             }
-            let Some((s, taken)) = best else { return };
-            heads[s] += 1;
+            let taken = heads[best].1[0];
+            match &heads[best].1[1..] {
+                [] => drop(heads.remove(best)),
+                rest => heads[best] = (place(rest[0]), rest),
+            }
             if let Some(before) = last
                 && self.order(n, by_x, forwards, before, taken) == Ordering::Equal
             {
-                self.merge(before.0, taken.0);
+                same.push((before.0, taken.0));
             } else {
                 chain.push(taken.0);
             }
             last = Some(taken);
+        }
+        for (before, taken) in same {
+            self.merge(before, taken);
         }
     }
 

@@ -454,7 +454,12 @@ impl Turned {
 
     /// The cells across between two places: from, to.
     fn cells(&self, low: f64, high: f64) -> (usize, usize) {
-        let at = |v: f64| (((v - self.start[1]) / self.cell).round().max(0.0) as usize).min(self.size[1]);
+        let at = |v: f64| {
+            // Rounded without the call that it is on machines that may lack the instruction.
+            let place = ((v - self.start[1]) / self.cell).clamp(0.0, self.size[1] as f64);
+            let whole = place as usize;
+            whole + usize::from(place - whole as f64 >= 0.5)
+        };
         (at(low), at(high).max(at(low)))
     }
 }

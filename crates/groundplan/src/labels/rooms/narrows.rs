@@ -206,7 +206,9 @@ impl<'a> Window<'a> {
             let row = self.pixels.row(y as usize);
             // What is nearer than its clearance is free.
             let across = |squared: f64| (squared - ((y - cy) * (y - cy)) as f64).max(0.0).sqrt();
-            let (from, to) = (across(clearance).ceil() as i64, across(reach * reach).floor() as i64);
+            // Rounded up and down, without the calls that these are on machines that may lack the instructions.
+            let (nearest, to) = (across(clearance), across(reach * reach) as i64);
+            let from = nearest as i64 + i64::from(nearest > (nearest as i64) as f64);
             let sides = (cx - to..=cx - from).chain(cx + from.max(1)..=cx + to);
             for x in sides.filter(|x| (0..width as i64).contains(x)) {
                 let squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
