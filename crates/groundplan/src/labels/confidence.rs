@@ -11,7 +11,7 @@ use crate::grid::State;
 use crate::subdivision::distance;
 
 /// So many labels are worth a thread's while.
-const TOGETHER: usize = 32;
+const TOGETHER: usize = 16;
 /// A side's structure lies from so far within a corridor to so far outside it, metres.
 const SIDE: [f64; 2] = [-0.2, 0.4];
 /// The middle part of a way's width in which it must be free.

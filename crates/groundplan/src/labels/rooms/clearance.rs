@@ -14,7 +14,7 @@ const WHOLE: usize = 1 << 24;
 const ROWS: usize = 128;
 const AT_ONCE: usize = 1 << 20;
 /// So many runs of a row are worth a thread's while.
-const TOGETHER: usize = 1 << 13;
+const TOGETHER: usize = 1 << 11;
 /// Where squares fit in 16 bits so many pixels side by side are looked at together: what lies so many steps more to either
 /// side, before it is asked whether something farther off may be nearer. Beyond the last of these numbers nothing is.
 const LANES: usize = 32;

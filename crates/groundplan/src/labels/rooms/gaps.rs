@@ -2,6 +2,7 @@
 
 use super::super::Evidence;
 use super::raster::Raster;
+use crate::bands::map_each;
 use crate::ends::around;
 use crate::grid::angle_between;
 use crate::on_line::OnLine;
@@ -63,8 +64,10 @@ const JAMB_PIXELS: i32 = 4;
 /// Gaps along every line of every direction, in the lines' order.
 pub fn along_lines(evidence: &Evidence, raster: &Raster) -> Vec<Bar> {
     let frame = &evidence.grid.frame;
-    let mut bars = Vec::new();
-    for (direction, &angle) in evidence.directions.angles.iter().enumerate() {
+    let angles = &evidence.directions.angles;
+    let along = |direction: usize| {
+        let mut bars = Vec::new();
+        let angle = angles[direction];
         let angle_on_grid = frame.angle_to_grid(angle);
         let mut members: Vec<(f64, usize)> = (0..evidence.lines.len())
             .filter(|&n| evidence.lines.directions[n] as usize == direction)
@@ -77,8 +80,9 @@ pub fn along_lines(evidence: &Evidence, raster: &Raster) -> Vec<Bar> {
             let line = Line::new(raster, angle_on_grid, offset);
             line.gaps(lined, evidence.parameters.rooms_max_opening, &mut bars);
         }
-    }
-    bars
+        bars
+    };
+    map_each(angles.len(), evidence.threads, along).concat()
 }
 
 /// For each line, the steps along it where edge pixels lie along it, ascending.

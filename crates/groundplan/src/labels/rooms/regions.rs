@@ -7,7 +7,7 @@ use super::fill::fill_runs;
 use super::raster::Raster;
 use super::runs::{Run, Runs};
 use super::{Racked, Space, Width};
-use crate::bands::flat_map_each;
+use crate::bands::map_each;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
@@ -25,6 +25,8 @@ const ROW: f64 = 1.0;
 /// Of a region's extent so much at each end does not count, and it is measured by about so many pixels.
 const STICKS_OUT: f64 = 0.03;
 const SAMPLES: usize = 2_000;
+/// So many regions are worth a thread's while.
+const SOME: usize = 8;
 /// What lies for the most part within a rack, by so many looks, is a gap between its goods.
 const LOOKS: usize = 200;
 
@@ -157,8 +159,8 @@ pub fn find(
     }
     let counts: Vec<usize> = std::iter::once(0).chain(regions.iter().map(|region| region.pixels)).collect();
     let pixels = samples(&numbers, |n| numbers.all[n].number, &counts, SAMPLES);
-    let places =
-        flat_map_each(regions.len(), evidence.threads, |n| [middle(evidence, raster, &pixels[n + 1], squares)]);
+    let threads = evidence.threads.min(regions.len() / SOME + 1);
+    let places = map_each(regions.len(), threads, |n| middle(evidence, raster, &pixels[n + 1], squares));
     regions.iter_mut().zip(places).for_each(|(region, place)| region.place = place);
     sort_by_rows(&mut regions);
     (regions, numbers)
