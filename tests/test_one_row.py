@@ -64,3 +64,41 @@ def test_the_last_bay_of_one_row_is_no_way_where_the_rows_beside_go_on_to_the_wa
     racks[3] = (13, 8, 19, 10)
     ways = labels(hall(22, 18, racks), "corridor", "width")
     assert ways == pytest.approx([3.0] * 4 + [4.0], abs=0.25)
+
+
+def test_ways_lead_past_two_rows_that_end_in_line() -> None:
+    racks: Boxes = [(2.6 + 9.6 * n, low, 9.6 + 9.6 * n, low + 0.5) for n in range(3) for low in (4.0, 8.5)]
+    picture = hall(31.4, 13, racks)
+    assert labels(picture, "junction", "type") == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
+    assert labels(picture, "corridor", "width") == pytest.approx([2.6] * 4 + [4.0] * 3, abs=0.25)
+
+
+def test_ways_lead_past_a_row_up_to_the_walls_behind_the_racks_across_the_aisles() -> None:
+    racks: Boxes = [(3, low, 17, low + depth) for low, depth in ((0.0, 1.0), (4.0, 1.2), (8.2, 1.0))]
+    picture = hall(20, 9.2, racks)
+    assert labels(picture, "junction", "type") == ["L"] * 4
+    assert labels(picture, "corridor", "width") == pytest.approx([3.0] * 4, abs=0.25)
+    ends = [rack["axis"] for rack in groundplan.survey(picture, resolution=RESOLUTION).of_kind("rack")]
+    assert [np.hypot(*np.subtract(*axis)) for axis in ends] == pytest.approx([14.0] * 3, abs=0.3)
+
+
+def test_a_pillar_behind_a_rack_is_not_of_it() -> None:
+    racks: Boxes = [(3, low, 17, low + 1.2) for low in (0.5, 4.7, 8.9)]
+    pillars: Boxes = [(x, low, x + 0.5, low + 0.5) for x in (6.0, 19.0) for low in (0.05, 10.05)]
+    picture = hall(22, 10.6, racks + pillars)
+    ends = [rack["axis"] for rack in groundplan.survey(picture, resolution=RESOLUTION).of_kind("rack")]
+    assert [np.hypot(*np.subtract(*axis)) for axis in ends] == pytest.approx([14.0] * 3, abs=0.3)
+
+
+@pytest.mark.parametrize("depth", [4, 7, 8, 12])
+def test_rows_of_a_coarse_map_are_free_where_nothing_stands_in_them(depth: int) -> None:
+    # At 0.1 m a pixel what is asked of a row's columns is as high as a pixel.
+    picture = np.full((4 * 32 + 3 * depth + 40, 290), 205, np.uint8)
+    picture[18:-18, 18:272] = 0
+    picture[20:-20, 20:270] = 254
+    for n in range(3):
+        low = 20 + 32 + n * (32 + depth)
+        picture[low : low + depth, 44:246] = 0
+    survey = groundplan.survey(picture, resolution=0.1)
+    assert sorted(label["type"] for label in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 4
+    assert len(survey.of_kind("rack")) == 3

@@ -86,7 +86,11 @@ pub fn find(views: &[Turned], strips: &[Strip], threads: usize) -> Vec<Meeting> 
         let [x, y] = meeting.at.map(|c| (c / SAME).floor() as i64);
         let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
         let known = around.filter_map(|place| places.get(&place)).flatten();
-        if let Some(&other) = known.filter(|n| distance(found[**n].at, meeting.at) <= SAME).min() {
+        let is_same = |n: &&usize| {
+            distance(found[**n].at, meeting.at) <= SAME
+                && !are_beside(strips, &found[**n].corridors, &meeting.corridors)
+        };
+        if let Some(&other) = known.filter(is_same).min() {
             found[other].join(meeting);
         } else {
             places.entry([x, y]).or_default().push(found.len());
@@ -104,6 +108,15 @@ pub fn find(views: &[Turned], strips: &[Strip], threads: usize) -> Vec<Meeting> 
     found
 }
 
+/// True when of some corridors one runs beside one of others with something between them: these lead to two junctions, be
+/// they as near as narrow aisles are.
+fn are_beside(strips: &[Strip], some: &[usize], others: &[usize]) -> bool {
+    let are_beside = |one: &Strip, two: &Strip| {
+        one.direction == two.direction && overlap(one.across, two.across) < 0.0 && overlap(one.along, two.along) > SAME
+    };
+    some.iter().any(|&one| others.iter().any(|&two| are_beside(&strips[one], &strips[two])))
+}
+
 /// A corridor that leads from one junction to another is a way out of both, be what goes on there as wide as it is long.
 fn lead_on(views: &[Turned], strips: &[Strip], found: &mut [Meeting]) {
     for (n, met) in of_each(found, strips.len()).into_iter().enumerate() {
@@ -112,7 +125,7 @@ fn lead_on(views: &[Turned], strips: &[Strip], found: &mut [Meeting]) {
         along.sort_by(|a, b| a.0.total_cmp(&b.0));
         for pair in along.windows(2) {
             let [(from, before), (to, after)] = [pair[0], pair[1]];
-            if to - from > SAME {
+            if to - from > SAME || are_beside(strips, &found[before].corridors, &found[after].corridors) {
                 found[before].lead(view.angle);
                 found[after].lead(view.angle + std::f64::consts::PI);
             }

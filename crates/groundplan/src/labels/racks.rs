@@ -31,6 +31,11 @@ impl Row {
         self.across[1] - self.across[0]
     }
 
+    /// No deeper than many a wall.
+    pub fn is_shallow(&self) -> bool {
+        self.depth() < DEPTH.0
+    }
+
     /// Its direction and its places, as [`placed`] takes them.
     pub fn place(&self) -> (usize, [f64; 2], [f64; 2]) {
         (self.direction, self.along, self.across)
@@ -51,6 +56,8 @@ impl Row {
 
 /// Two faces are this far apart, metres: less is a wall, more is a room.
 pub const DEPTH: (f64, f64) = (0.5, 3.6);
+/// Between two corridors what is so deep may be a row of shelves or machines, metres, as others beside it are.
+const SHALLOW: f64 = 0.25;
 /// A row's piece is at least so long, metres.
 pub const SHORTEST: f64 = 1.2;
 /// Least share of a row that is taken.
@@ -152,6 +159,15 @@ impl<'a> Crossings<'a> {
         found
     }
 
+    /// A row from face to face, without so much behind those of its faces along which no corridor runs, metres.
+    pub fn before_backs(&self, row: &Row, by: f64) -> [f64; 2] {
+        let near = self.placed[row.direction].touching(row.along, wider(row.across, SAME));
+        let is_before =
+            |side: usize| near.iter().any(|&n| (self.strips[n].across[1 - side] - row.across[side]).abs() <= SAME);
+        let [low, high] = [0, 1].map(|side| if is_before(side) { 0.0 } else { by });
+        [row.across[0] + low, row.across[1] - high]
+    }
+
     /// What lies between neighbouring corridors.
     fn between(&self) -> Vec<Row> {
         let Self { strips, extents, .. } = *self;
@@ -162,7 +178,7 @@ impl<'a> Crossings<'a> {
                 let [from, to] = extents[m];
                 let shared = open.iter().map(|(a, b)| (a.max(from), b.min(to))).filter(|(a, b)| a < b).collect();
                 open = without(open, from, to);
-                if depth >= DEPTH.0 {
+                if depth >= SHALLOW {
                     let across = [strip.across[1], strips[m].across[0]];
                     let pieces = self.uncrossed(strip.direction, across, shared).into_iter();
                     rows.extend(pieces.map(|along| Row {

@@ -83,13 +83,16 @@ impl<'a> Columns<'a> {
         let slices: Vec<_> = (0..slices)
             .map(|k| row.across[0] + k as f64 * height)
             .map(|low| (low + height / 2.0, view.blocked_in(low, low + height)))
+            // Of slices as high as cells some lie between the samples of one and those of the next.
+            .filter(|(_, of)| of.has_samples())
             .collect();
         let faces = row.across.map(|v| (v, view.occupied_in(v - FACE, v + FACE)));
         for n in 0..count {
             let along = made.place(n) + view.cell / 2.0;
             let column = |v: f64| view.column(along + (v - middle) * lean);
             let share = |(v, of): &(f64, Shares)| of.share(of.at(column(*v)));
-            made.blocked.push(slices.iter().map(share).sum::<f64>() / slices.len() as f64);
+            let taken = slices.iter().map(share).sum::<f64>() / slices.len() as f64;
+            made.blocked.push(if slices.is_empty() { 1.0 } else { taken });
             made.faces.push([0, 1].map(|face| share(&faces[face]) > 0.0));
         }
         made
@@ -108,7 +111,7 @@ impl<'a> Columns<'a> {
     }
 
     /// The way between one of its ends, at which there is a wall, and what of the row stands nearest to that, if this is
-    /// closed there; it is no wider than so many metres.
+    /// closed there; it is no wider than so many metres. At both its ends half a column may be free.
     pub fn way_at_end(&self, side: usize, widest: f64) -> Option<[f64; 2]> {
         let count = self.blocked.len();
         let open: Vec<bool> = (0..count).map(|n| !self.stops(n)).collect();
@@ -118,7 +121,7 @@ impl<'a> Columns<'a> {
         let ends = [self.place(from), self.place(to)];
         let is_way = off as f64 * self.view.cell <= SIDE
             && (1..count).contains(&upright)
-            && (WIDTH.0..=widest).contains(&(ends[1] - ends[0]))
+            && (WIDTH.0..=widest).contains(&(ends[1] - ends[0] + self.view.cell))
             && self.share(from, to) <= CLUTTER;
         (is_way && self.is_closed(self.place(upright))).then_some(ends)
     }

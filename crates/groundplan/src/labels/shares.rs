@@ -12,6 +12,11 @@ pub struct Shares<'a> {
 }
 
 impl Shares<'_> {
+    /// True when there is a sample in each column.
+    pub fn has_samples(&self) -> bool {
+        self.count > 0
+    }
+
     /// Of so many samples of a column.
     pub fn at(&self, column: usize) -> u32 {
         self.rows.at(column)

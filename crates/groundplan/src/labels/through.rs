@@ -11,7 +11,7 @@ use super::sections::{Columns, WIDTH};
 use super::turned::Turned;
 use super::widths::Widths;
 use crate::ends::{overlap, shared, sorted, wider};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A row and what stands in it.
 pub struct Seen<'a> {
@@ -55,8 +55,10 @@ const LIKELY: f64 = 0.3;
 const AT_WALL: (f64, f64) = (6.0, 3.5);
 /// A row goes on up to a wall that is so near to its end, metres.
 const NEAR: f64 = 0.3;
-/// What stands so near to a corridor's side, metres, over so much of a place bounds that.
+/// What stands so near to a corridor's side, metres, or so far behind it as racks at walls are deep, over so much of a place
+/// bounds that.
 const BESIDE: f64 = 0.3;
+const OUTWARDS: f64 = 2.0;
 const BOUNDED: f64 = 0.8;
 /// Widths are counted in such steps, metres.
 const STEP: f64 = 0.1;
@@ -137,16 +139,54 @@ impl<'a> Through<'a> {
     }
 
     /// The ways between the last of a row and a wall that ends it and the corridors beside it, and whether each is as wide as
-    /// bays: of those beside which no other corridor runs, for more rows tell by one another what is a way.
+    /// bays: where all rows beside one another end in line there, for else more rows tell by one another what is a way.
     pub fn at_walls(&self, strips: &[Strip], placed: &[Beside]) -> Vec<(Strip, bool)> {
         let at_wall = |seen: &Seen, side: usize| {
             let ends = seen.columns.way_at_end(side, widest_at_wall(seen.beside))?;
             let [view, other] = seen.views;
-            let is_way =
-                seen.is_at_wall(strips, side) && seen.is_bounded(strips, ends) && seen.is_alone(strips, placed);
-            is_way.then(|| (gates::strip(view, other, seen.row, ends, seen.middles), seen.columns.is_as_bays(ends)))
+            let way = || gates::strip(view, other, seen.row, ends, seen.middles);
+            seen.is_at_wall(strips, side).then(|| (way(), seen.is_bounded(strips, ends), seen.columns.is_as_bays(ends)))
         };
-        self.rows.iter().flat_map(|seen| [0, 1].map(|side| at_wall(seen, side))).flatten().collect()
+        let mut found = Vec::new();
+        for side in [0, 1] {
+            let ways: Vec<_> = self.rows.iter().map(|seen| at_wall(seen, side)).collect();
+            for (n, at_wall) in ways.iter().enumerate() {
+                let Some((way, _, is_as_bays)) = at_wall else { continue };
+                let beside = self.beside(n, way.middle());
+                let is_in_line = |m: &usize| {
+                    let is_so = |end: usize, other: &Strip| (other.across[end] - way.across[end]).abs() <= SLACK;
+                    ways[*m].as_ref().is_some_and(|(other, ..)| is_so(0, other) && is_so(1, other))
+                };
+                let is_bounded = |m: &usize| ways[*m].as_ref().is_some_and(|(_, is_bounded, _)| *is_bounded);
+                if beside.iter().all(is_in_line)
+                    && beside.iter().any(is_bounded)
+                    && self.are_all(&beside, strips, placed)
+                {
+                    found.push((way.clone(), *is_as_bays));
+                }
+            }
+        }
+        found
+    }
+
+    /// A row and those beside it, one beside another, that reach up to a place across the direction that crosses them.
+    fn beside(&self, row: usize, place: f64) -> Vec<usize> {
+        let mut found = vec![row];
+        let mut next = 0;
+        while let Some(&n) = found.get(next) {
+            let beside = self.above[n].iter().chain(&self.below[n]);
+            let more: Vec<usize> =
+                beside.copied().filter(|m| self.rows[*m].holds(place) && !found.contains(m)).collect();
+            found.extend(more);
+            next += 1;
+        }
+        found
+    }
+
+    /// True when no corridor runs beside some rows but those between which they are known, no further off than a row is deep.
+    fn are_all(&self, rows: &[usize], strips: &[Strip], placed: &[Beside]) -> bool {
+        let known: BTreeSet<usize> = rows.iter().flat_map(|&n| self.rows[n].between).collect();
+        rows.iter().all(|&n| self.rows[n].corridors_beside(strips, placed).iter().all(|strip| known.contains(strip)))
     }
 
     /// What of a stretch that is open in some rows goes on through the next ones.
@@ -284,16 +324,13 @@ impl Seen<'_> {
         view.some_closed(view.column(beyond[0])..view.column(beyond[1]) + 1, below[0], above[1]).any()
     }
 
-    /// True when no third corridor runs beside the two, no further off than a row is deep.
-    fn is_alone(&self, strips: &[Strip], placed: &[Beside]) -> bool {
+    /// The corridors that run along it no further off than a row is deep.
+    fn corridors_beside(&self, strips: &[Strip], placed: &[Beside]) -> Vec<usize> {
         let [below, above] = self.between;
         let beside = wider([strips[below].across[0], strips[above].across[1]], DEPTH.1);
-        let is_third = |n: usize| {
-            !self.between.contains(&n)
-                && overlap(strips[n].along, self.row.along) > 0.0
-                && overlap(strips[n].across, beside) > 0.0
-        };
-        !placed[self.row.direction].touching(self.row.along, beside).into_iter().any(is_third)
+        let mut found = placed[self.row.direction].touching(self.row.along, beside);
+        found.retain(|&n| overlap(strips[n].along, self.row.along) > 0.0 && overlap(strips[n].across, beside) > 0.0);
+        found
     }
 
     /// True when one of the two corridors leads to a place beyond the row, or a wall goes on along its far side: else that
@@ -301,13 +338,16 @@ impl Seen<'_> {
     fn is_bounded(&self, strips: &[Strip], ends: [f64; 2]) -> bool {
         let (view, middle) = (self.views[0], f64::midpoint(ends[0], ends[1]));
         let columns = view.column(ends[0])..view.column(ends[1]);
-        let is_held = |v: f64| {
-            let held = view.blocked_where(columns.clone(), v - BESIDE, v + BESIDE, |share| share > 0.0);
+        let is_held = |low: f64, high: f64| {
+            let held = view.blocked_where(columns.clone(), low, high, |share| share > 0.0);
             held.count(0..columns.len()) as f64 >= BOUNDED * columns.len() as f64
         };
         let leads = |n: usize| (strips[n].along[0]..=strips[n].along[1]).contains(&middle);
         let [below, above] = self.between;
-        [below, above].into_iter().any(leads) || is_held(strips[below].across[0]) || is_held(strips[above].across[1])
+        let [low, high] = [strips[below].across[0], strips[above].across[1]];
+        [below, above].into_iter().any(leads)
+            || is_held(low - OUTWARDS, low + BESIDE)
+            || is_held(high - BESIDE, high + OUTWARDS)
     }
 
     /// A way through it.

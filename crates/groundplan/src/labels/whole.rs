@@ -50,7 +50,8 @@ pub fn find(
     let crossings = Crossings::new(views, strips, extents);
     let whole = |row: &Row| {
         let view = &views[row.direction];
-        let row = trimmed(view, row, row.across)?;
+        // A pillar that stands at its back is not of it.
+        let row = trimmed(view, row, crossings.before_backs(row, 2.0 * RIM))?;
         Some(if row.between.is_some() { followed(view, &crossings, &row) } else { row })
     };
     let found: Vec<Row> = known.iter().filter_map(whole).collect();
@@ -87,17 +88,17 @@ fn of_a_kind(rows: &[Row]) -> Vec<Row> {
     rows.iter().filter(has_kin).cloned().collect()
 }
 
-/// Rows without those that are walls for all that is seen: closed all along, nothing known between, and none of the kind
-/// across an aisle.
+/// Rows without those that are walls for all that is seen: no deeper than these, or closed all along and nothing known
+/// between, and none of the kind across an aisle.
 fn without_walls(views: &[Turned], rows: &[Row]) -> Vec<Row> {
-    let (shells, others): (Vec<_>, Vec<_>) =
-        rows.iter().zip(0..).partition(|(row, _)| is_shell(&views[row.direction], row));
-    let placed = placed(views, shells.iter().map(|(row, _)| row.place()));
+    let is_as_walls = |row: &Row| row.is_shallow() || is_shell(&views[row.direction], row);
+    let (walls, others): (Vec<_>, Vec<_>) = rows.iter().zip(0..).partition(|(row, _)| is_as_walls(row));
+    let placed = placed(views, walls.iter().map(|(row, _)| row.place()));
     let has_kin = |(row, _): &(&Row, usize)| {
-        let mut near = standing_near(&placed, row).into_iter().map(|n| shells[n].0);
+        let mut near = standing_near(&placed, row).into_iter().map(|n| walls[n].0);
         near.any(|other| beside(row, other) && are_alike(row, other))
     };
-    let mut kept: Vec<_> = shells.iter().copied().filter(has_kin).chain(others).collect();
+    let mut kept: Vec<_> = walls.iter().copied().filter(has_kin).chain(others).collect();
     kept.sort_by_key(|(_, n)| *n);
     kept.into_iter().map(|(row, _)| row.clone()).collect()
 }

@@ -1,0 +1,167 @@
+"""Plain halls, drawn without noise: bench/plain.py [FIRST [COUNT]].
+
+The least that one may ask of a survey: a closed hall with blocks of racks in rows, aisles between them, ways across
+between the blocks and past the last ones. What a person would count is known from the plan. Every measure comes from
+the hall's seed: widths, depths and lengths, alike or each its own, racks at the long walls or aisles, a hall whose last
+block leans on a wall, turned or along the pixels, 2.5 to 10 cm; racks are solid, or outlines of what nobody saw, or
+outlines of floor. The table has how many of COUNT (400) halls from the seeds FIRST (0) on have other junctions than the
+plan, and how many another number of racks where it has three or more; then those with other junctions. No bar, so no
+exit code.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+import sys
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, fields
+from multiprocessing import get_context
+
+import numpy as np
+import numpy.typing as npt
+
+import groundplan
+from groundplan.maps import FREE, OCCUPIED, UNKNOWN
+
+GREYS = {FREE: 254, OCCUPIED: 0, UNKNOWN: 205}
+#: Metres: how thick walls are, and how deep racks along them; the unknown around.
+WALL, AT_WALL, AROUND = 0.15, 1.0, 2.0
+#: The sides of a rack that is no more than its outline, metres, or so many pixels.
+SIDE, SIDE_PIXELS = 0.06, 1.5
+#: So many racks make a place of racks.
+RACKS = 3
+#: So many halls are named.
+NAMED = 30
+
+
+@dataclass(frozen=True)
+class Hall:
+    """What is drawn at random; metres, degrees."""
+
+    aisles: list[float]
+    depths: list[float]
+    lengths: list[float]
+    gaps: list[float]
+    look: str
+    at_walls: str
+    ends: str
+    turn: float
+    resolution: float
+    corner: tuple[float, float]  # of the hall on its first pixel, shares of it
+
+
+def hall(seed: int) -> Hall:
+    """The hall of a seed."""
+    draw = random.Random(seed)
+    rows, blocks = draw.choice([1, 2, 3, 4, 6]), draw.choice([1, 2, 3, 4])
+    aisle, gap, depth = draw.uniform(1.4, 4.5), draw.uniform(1.9, 4.5), draw.uniform(0.4, 2.6)
+    length, spread = max(draw.uniform(6, 24), 2.5 * aisle), draw.choice([0.0, 0.0, 0.3])
+
+    def some(metres: float, count: int) -> list[float]:
+        return [metres * (1 + draw.uniform(-spread, spread)) for _ in range(count)]
+
+    return Hall(
+        aisles=some(aisle, rows + 1),
+        depths=some(depth, rows),
+        lengths=some(length, blocks),
+        gaps=some(gap, blocks + 1),
+        look=draw.choice(["solid", "unseen", "hollow"]),
+        at_walls=draw.choice(["aisles", "racks"]),
+        ends=draw.choice(["ways", "ways", "a wall"]),
+        turn=draw.choice([0.0, 0.0, draw.uniform(-45, 45)]),
+        resolution=draw.choice([0.025, 0.05, 0.05, 0.1]),
+        corner=(draw.random(), draw.random()),
+    )
+
+
+def picture(hall: Hall) -> npt.NDArray[np.uint8]:
+    """The hall as a map."""
+    pixel, rim = hall.resolution, AT_WALL if hall.at_walls == "racks" else 0.0
+    gaps = hall.gaps if hall.ends == "ways" else [*hall.gaps[:-1], 0.0]
+    wide, deep = sum(hall.lengths) + sum(gaps), sum(hall.aisles) + sum(hall.depths) + 2 * rim
+    cos, sin = math.cos(math.radians(hall.turn)), math.sin(math.radians(hall.turn))
+    columns = int((abs(wide * cos) + abs(deep * sin) + 2 * AROUND) / pixel)
+    rows = int((abs(wide * sin) + abs(deep * cos) + 2 * AROUND) / pixel)
+    y, x = np.mgrid[:rows, :columns].astype(float)
+    x = (x + 0.5 + hall.corner[0] - columns / 2) * pixel
+    y = (y + 0.5 + hall.corner[1] - rows / 2) * pixel
+    u, v = x * cos + y * sin + wide / 2, y * cos - x * sin + deep / 2
+    drawn = np.full((rows, columns), GREYS[UNKNOWN], dtype=np.uint8)
+
+    def fill(x0: float, x1: float, y0: float, y1: float, state: int) -> None:
+        drawn[(u > x0) & (u < x1) & (v > y0) & (v < y1)] = GREYS[state]
+
+    def rack(x0: float, x1: float, y0: float, y1: float) -> None:
+        fill(x0, x1, y0, y1, OCCUPIED)
+        if hall.look != "solid":
+            by = max(SIDE, SIDE_PIXELS * pixel)
+            fill(x0 + by, x1 - by, y0 + by, y1 - by, FREE if hall.look == "hollow" else UNKNOWN)
+
+    fill(-WALL, wide + WALL, -WALL, deep + WALL, OCCUPIED)
+    fill(0, wide, 0, deep, FREE)
+    at = 0.0
+    for gap, length in zip(gaps, hall.lengths, strict=False):
+        at += gap
+        low = rim
+        for aisle, depth in zip(hall.aisles, hall.depths, strict=False):
+            low += aisle
+            rack(at, at + length, low, low + depth)
+            low += depth
+        if rim:
+            rack(at, at + length, 0, rim)
+            rack(at, at + length, deep - rim, deep)
+        at += length
+    return drawn
+
+
+def planned(hall: Hall) -> Counter[str]:
+    """How many of each kind a person would count."""
+    aisles, between = len(hall.aisles), len(hall.lengths) - 1
+    past = 2 if hall.ends == "ways" else 1
+    junctions = {"L": 2 * past, "T": (aisles - 2) * past + 2 * between, "X": (aisles - 2) * between}
+    racks = len(hall.lengths) * (len(hall.depths) + (2 if hall.at_walls == "racks" else 0))
+    return Counter(junctions | {"end": 0 if past == 2 else aisles, "rack": racks})
+
+
+def found(seed: int) -> Counter[str]:
+    """The same of a survey."""
+    made = hall(seed)
+    survey = groundplan.survey(picture(made), resolution=made.resolution, threads=1)
+    kinds = Counter(label["type"] for label in survey.of_kind("junction"))
+    return kinds + Counter(rack=len(survey.of_kind("rack")))
+
+
+def said(value: object) -> str:
+    """A measure in few letters."""
+    if isinstance(value, float):
+        return f"{value:.3g}"
+    return "/".join(map(said, value)) if isinstance(value, list) else str(value)
+
+
+def main() -> None:
+    """Survey all, print the tables."""
+    first, count = (*map(int, sys.argv[1:3]), *(0, 400)[len(sys.argv) - 1 :])
+    seeds = range(first, first + count)
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
+        surveyed = dict(zip(seeds, pool.map(found, seeds, chunksize=4), strict=True))
+    plans = {seed: (hall(seed), planned(hall(seed))) for seed in seeds}
+    kinds = ("L", "T", "X", "Y", "end")
+    other = {seed for seed in seeds if any(surveyed[seed][kind] != plans[seed][1][kind] for kind in kinds)}
+    racks = {seed for seed in seeds if surveyed[seed]["rack"] != plans[seed][1]["rack"] >= RACKS}
+    print(f"{count} halls             other junctions  other racks    of")
+    for measure in ("look", "at_walls", "ends", "resolution"):
+        for value in sorted({getattr(made, measure) for made, _ in plans.values()}, key=str):
+            own = {seed for seed, (made, _) in plans.items() if getattr(made, measure) == value}
+            print(f"{measure:11}{said(value):10}{len(own & other):16}{len(own & racks):13}{len(own):6}")
+    print(f"{'all':21}{len(other):16}{len(racks):13}{count:6}")
+    for seed in sorted(other)[:NAMED]:
+        made, plan = plans[seed]
+        measures = "  ".join(f"{field.name} {said(getattr(made, field.name))}" for field in fields(made)[:-1])
+        told = "  ".join(f"{kind} {surveyed[seed][kind]} for {plan[kind]}" for kind in kinds if plan[kind])
+        print(f"\n{seed}: {told}\n    {measures}")
+
+
+if __name__ == "__main__":
+    main()
