@@ -62,6 +62,10 @@ const SHALLOW: f64 = 0.25;
 pub const SHORTEST: f64 = 1.2;
 /// Least share of a row that is taken.
 const TAKEN: f64 = 0.12;
+/// What stands so near to a face, metres, stands on it; it does on both faces of an outline over so much of it, and for
+/// each such part on one alone over so much.
+const ON_FACE: f64 = 0.15;
+const OUTLINED: (f64, f64) = (0.5, 0.05);
 /// The same where no corridor runs along its other side.
 const TAKEN_OUTSIDE: f64 = 0.5;
 const SEEN_OUTSIDE: f64 = 0.5;
@@ -76,7 +80,8 @@ pub const SAME: f64 = 0.3;
 pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
     let crossings = Crossings::new(views, strips, extents);
     let mut rows = crossings.between();
-    rows.retain(|row| taken(&views[row.direction], row) >= TAKEN);
+    let holds = |view: &Turned, row: &Row| taken(view, row) >= TAKEN || is_outlined(view, row);
+    rows.retain(|row| holds(&views[row.direction], row));
     for (n, strip) in strips.iter().enumerate() {
         let view = &views[strip.direction];
         for side in [0, 1] {
@@ -283,6 +288,20 @@ pub fn crossed(
     let ends = crossing.across.map(|t| view.crossing(other, middle, t));
     let within = ends.iter().any(|[s, _]| (extent[0]..=extent[1]).contains(s));
     within.then(|| sorted([ends[0][1], ends[1][1]]))
+}
+
+/// True when something stands on both faces of a row over much of it, and hardly anywhere on one alone: it is drawn by its
+/// outline, and what floor shows within it nobody comes to.
+fn is_outlined(view: &Turned, row: &Row) -> bool {
+    let columns = view.column(row.along[0])..view.column(row.along[1]);
+    let [one, two] = row.across.map(|face| view.some_occupied(columns.clone(), face - ON_FACE, face + ON_FACE));
+    let stand = one.iter().zip(&two).map(|(one, two)| usize::from(*one > 0.0) + usize::from(*two > 0.0));
+    let counts = stand.fold([0.0; 3], |mut counts, faces| {
+        counts[faces] += 1.0;
+        counts
+    });
+    let [_, alone, both] = counts;
+    both >= OUTLINED.0 * columns.len() as f64 && alone <= OUTLINED.1 * both
 }
 
 /// Share of a row that is not free.

@@ -4,7 +4,7 @@
 use super::beside::Beside;
 use super::connected::ALIKE;
 use super::corridors::Strip;
-use super::racks::{self, DEPTH};
+use super::racks::{self, DEPTH, SAME};
 use super::runs::{close, runs};
 use super::sections::{self, WIDTH};
 use super::turned::Turned;
@@ -14,6 +14,9 @@ use crate::ends::{overlap, shared, wider};
 const SIDED: f64 = 0.6;
 /// It does so from so far within the side to so far beyond, in widths.
 const SIDE: (f64, f64) = (0.1, 0.25);
+/// An outline is closed where something of it stands so near, metres, over so much of a side.
+const OUTLINE: f64 = 0.15;
+const CLOSED: f64 = 0.95;
 /// Things are parted by more than so many metres.
 const PARTED: f64 = 0.3;
 
@@ -26,6 +29,21 @@ pub fn is_sided(view: &Turned, strip: &Strip) -> bool {
         let held = view.blocked_where(columns.clone(), low, high, |share| share > 0.0);
         held.count(0..columns.len()) as f64 >= SIDED * columns.len() as f64
     })
+}
+
+/// True when a strip that is shut at both its ends is so all along its sides too, and another runs along it behind one of
+/// them: nothing leads into it, and it is the inside of a row that is drawn by its outline. Of all it is known where they
+/// lie.
+pub fn is_within_outline(view: &Turned, strips: &[Strip], placed: &[Beside], n: usize) -> bool {
+    let own = &strips[n];
+    let columns = view.column(own.along[0])..view.column(own.along[1]);
+    let is_closed = |side: f64| view.share_touched(columns.clone(), side - OUTLINE, side + OUTLINE) >= CLOSED;
+    let is_behind = |other: &Strip| {
+        (-SAME..=DEPTH.0).contains(&-overlap(own.across, other.across))
+            && overlap(own.along, other.along) >= (1.0 - ALIKE) * own.length()
+    };
+    let near = placed[own.direction].touching(own.along, wider(own.across, DEPTH.0));
+    own.across.into_iter().all(is_closed) && near.into_iter().any(|m| m != n && is_behind(&strips[m]))
 }
 
 /// True when another that is like it runs beside a strip, as far as goods do not hide the shorter of the two, with a row between them of which several pieces stand, and ways
