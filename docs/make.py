@@ -48,9 +48,14 @@ def scores() -> None:
             [PROGRAM, "evaluate", "--suite", suite], check=True, stdout=subprocess.PIPE, text=True
         ).stdout
         _between(DOCS / "accuracy.md", suite, f"```\n{table}```")
-    for name, words in (("other sites", []), ("other hard sites", ["0", "66", "--hard"])):
+    benches = (
+        ("plain halls", ["plain.py"]),
+        ("other sites", ["other_sites.py"]),
+        ("other hard sites", ["other_sites.py", "0", "66", "--hard"]),
+    )
+    for name, (bench, *words) in benches:
         others = subprocess.run(
-            [sys.executable, DOCS.parent / "bench" / "other_sites.py", *words],
+            [sys.executable, DOCS.parent / "bench" / bench, *words],
             check=True,
             stdout=subprocess.PIPE,
             text=True,

@@ -102,3 +102,31 @@ def test_rows_of_a_coarse_map_are_free_where_nothing_stands_in_them(depth: int) 
     survey = groundplan.survey(picture, resolution=0.1)
     assert sorted(label["type"] for label in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 4
     assert len(survey.of_kind("rack")) == 3
+
+
+def outlined(depth: float) -> Picture:
+    """A hall of 32 m with three rows of two racks of 10 m that are drawn by their outlines, floor within."""
+    aisle, way = 2.8, 4.0
+    lows = [aisle + n * (aisle + depth) for n in range(3)]
+    racks = [(left, low, left + 10, low + depth) for low in lows for left in (way, 2 * way + 10)]
+    picture = hall(3 * way + 20, 4 * aisle + 3 * depth, racks)
+    inside = hall(
+        3 * way + 20, 4 * aisle + 3 * depth, [(x0 + 0.1, y0 + 0.1, x1 - 0.1, y1 - 0.1) for x0, y0, x1, y1 in racks]
+    )
+    solid = hall(3 * way + 20, 4 * aisle + 3 * depth, [])
+    picture[(inside == 0) & (solid == 254)] = 254
+    return picture
+
+
+@pytest.mark.parametrize("depth", [0.8, 1.6, 2.4])
+def test_racks_that_are_drawn_by_their_outlines_have_ways_around_and_none_within(depth: float) -> None:
+    assert labels(outlined(depth), "junction", "type") == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
+    assert len(labels(outlined(depth), "corridor", "name")) == 7
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_specks_between_an_aisle_and_the_way_past_its_end_bar_neither(seed: int) -> None:
+    picture = hall(31.4, 15, [(2.6 + 9.6 * n, low, 9.6 + 9.6 * n, low + 1.5) for n in range(3) for low in (4.0, 9.5)])
+    specks = np.random.default_rng(seed).random(picture.shape) < 0.001
+    picture[specks & (picture == 254)] = 0
+    assert labels(picture, "junction", "type") == ["L"] * 4 + ["T"] * 6 + ["X"] * 2

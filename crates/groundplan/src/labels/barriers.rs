@@ -3,6 +3,7 @@
 use super::shares::Shares;
 use super::turned::Turned;
 use crate::bits::Bits;
+use crate::sets::Sets;
 use std::ops::Range;
 
 /// Such a wall bars more than this share of the strip.
@@ -21,6 +22,8 @@ const BESIDE: f64 = 0.7;
 /// What is barred within so much of the strip's sides is the sides, metres.
 const MARGIN: f64 = 0.1;
 
+/// A speck is less than so many rows of cells high and no more than so many columns long, of which two are beside it.
+const SPECK: (usize, usize) = (2, 4);
 /// What gets along a strip is so much of it wide.
 const GETS_THROUGH: f64 = 0.35;
 
@@ -82,6 +85,41 @@ pub fn among(view: &Turned, across: [f64; 2], range: Range<usize>) -> Bits {
     walls.part(first..first + range.len())
 }
 
+/// Rows of columns without pieces that are no larger than a speck.
+fn without_specks(barred: &[Bits], count: usize) -> Vec<Bits> {
+    // Runs of all rows, and which of them hang together.
+    let runs: Vec<(usize, Range<usize>)> =
+        barred.iter().zip(0..).flat_map(|(row, n)| row.runs(0..count, true).map(move |run| (n, run))).collect();
+    let mut pieces = Sets::new(0);
+    let mut first = 0;
+    for (n, (row, run)) in runs.iter().enumerate() {
+        pieces.add();
+        while runs[first].0 + 1 < *row {
+            first += 1;
+        }
+        for (m, (_, other)) in runs[first..n].iter().enumerate().filter(|(_, (below, _))| below < row) {
+            if other.start <= run.end && run.start <= other.end {
+                pieces.join_first(n as u32, (first + m) as u32);
+            }
+        }
+    }
+    // From its first row and column to its last ones.
+    let mut boxes = vec![[usize::MAX, 0, usize::MAX, 0]; runs.len()];
+    for (n, (row, run)) in runs.iter().enumerate() {
+        let [low, high, from, to] = &mut boxes[pieces.of(n as u32) as usize];
+        (*low, *high) = ((*low).min(*row), (*high).max(*row));
+        (*from, *to) = ((*from).min(run.start), (*to).max(run.end));
+    }
+    let mut left = vec![Bits::new(count); barred.len()];
+    for (n, (row, run)) in runs.into_iter().enumerate() {
+        let [low, high, from, to] = boxes[pieces.of(n as u32) as usize];
+        if high - low >= SPECK.0 || to - from > SPECK.1 {
+            left[row].fill(run);
+        }
+    }
+    left
+}
+
 /// Where a square of a share of the strip's width, which never turns back, gets no further along it: a wall askew to
 /// the strip bars no column for itself. Beyond each such column it begins anew.
 pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize> {
@@ -99,7 +137,7 @@ pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize>
     let mut free_for = vec![side; count];
     let mut reached = vec![true; count];
     let row = |n: usize| view.barred_where(range.clone(), place(n), place(n) + view.cell, |barred| barred > 0.0);
-    let barred: Vec<Bits> = (0..count).map(row).collect();
+    let barred = without_specks(&(0..count).map(row).collect::<Vec<_>>(), range.len());
     let mut some = Bits::new(range.len());
     for barred in &barred {
         some |= barred;
