@@ -170,21 +170,17 @@ impl<'a> Through<'a> {
     }
 
     /// A row and those beside it, one beside another, that reach up to a place across the direction that crosses them.
-    fn beside(&self, row: usize, place: f64) -> Vec<usize> {
-        let mut found = vec![row];
-        let mut next = 0;
-        while let Some(&n) = found.get(next) {
-            let beside = self.above[n].iter().chain(&self.below[n]);
-            let more: Vec<usize> =
-                beside.copied().filter(|m| self.rows[*m].holds(place) && !found.contains(m)).collect();
-            found.extend(more);
-            next += 1;
+    fn beside(&self, row: usize, place: f64) -> BTreeSet<usize> {
+        let (mut found, mut next) = (BTreeSet::from([row]), vec![row]);
+        while let Some(n) = next.pop() {
+            let beside = self.above[n].iter().chain(&self.below[n]).copied();
+            next.extend(beside.filter(|&m| self.rows[m].holds(place) && found.insert(m)));
         }
         found
     }
 
     /// True when no corridor runs beside some rows but those between which they are known, no further off than a row is deep.
-    fn are_all(&self, rows: &[usize], strips: &[Strip], placed: &[Beside]) -> bool {
+    fn are_all(&self, rows: &BTreeSet<usize>, strips: &[Strip], placed: &[Beside]) -> bool {
         let known: BTreeSet<usize> = rows.iter().flat_map(|&n| self.rows[n].between).collect();
         rows.iter().all(|&n| self.rows[n].corridors_beside(strips, placed).iter().all(|strip| known.contains(strip)))
     }
