@@ -4,9 +4,9 @@ The least that one may ask of a survey: a closed hall with blocks of racks in ro
 between the blocks and past the last ones. What a person would count is known from the plan. Every measure comes from
 the hall's seed: widths, depths and lengths, alike or each its own, racks at the long walls or aisles, a hall whose last
 block leans on a wall, turned or along the pixels, 2.5 to 10 cm; racks are solid, or outlines of what nobody saw, or
-outlines of floor. The table has how many of COUNT (400) halls from the seeds FIRST (0) on have other junctions than the
-plan, and how many another number of racks where it has three or more; then those with other junctions. No bar, so no
-exit code.
+outlines of floor, and deep ones may have a flue. The table has how many of COUNT (400) halls from the seeds FIRST (0)
+on have other junctions than the plan, and how many another number of racks where it has three or more; then those with
+other junctions. No bar, so no exit code.
 """
 
 from __future__ import annotations
@@ -30,6 +30,8 @@ GREYS = {FREE: 254, OCCUPIED: 0, UNKNOWN: 205}
 WALL, AT_WALL, AROUND = 0.15, 1.0, 2.0
 #: The sides of a rack that is no more than its outline, metres, or so many pixels.
 SIDE, SIDE_PIXELS = 0.06, 1.5
+#: Rows this deep may be of racks back to back, metres.
+BACK_TO_BACK = 1.3
 #: So many racks make a place of racks.
 RACKS = 3
 #: So many halls are named.
@@ -50,6 +52,7 @@ class Hall:
     turn: float
     resolution: float
     corner: tuple[float, float]  # of the hall on its first pixel, shares of it
+    flue: float  # between racks that stand back to back, where a row is deep enough
 
 
 def hall(seed: int) -> Hall:
@@ -73,6 +76,7 @@ def hall(seed: int) -> Hall:
         turn=draw.choice([0.0, 0.0, draw.uniform(-45, 45)]),
         resolution=draw.choice([0.025, 0.05, 0.05, 0.1]),
         corner=(draw.random(), draw.random()),
+        flue=draw.choice([0.0, 0.24]),
     )
 
 
@@ -98,6 +102,8 @@ def picture(hall: Hall) -> npt.NDArray[np.uint8]:
         if hall.look != "solid":
             by = max(SIDE, SIDE_PIXELS * pixel)
             fill(x0 + by, x1 - by, y0 + by, y1 - by, FREE if hall.look == "hollow" else UNKNOWN)
+        if y1 - y0 >= BACK_TO_BACK:
+            fill(x0, x1, (y0 + y1 - hall.flue) / 2, (y0 + y1 + hall.flue) / 2, FREE)
 
     fill(-WALL, wide + WALL, -WALL, deep + WALL, OCCUPIED)
     fill(0, wide, 0, deep, FREE)
@@ -151,14 +157,16 @@ def main() -> None:
     other = {seed for seed in seeds if any(surveyed[seed][kind] != plans[seed][1][kind] for kind in kinds)}
     racks = {seed for seed in seeds if surveyed[seed]["rack"] != plans[seed][1]["rack"] >= RACKS}
     print(f"{count} halls             other junctions  other racks    of")
-    for measure in ("look", "at_walls", "ends", "resolution"):
+    for measure in ("look", "at_walls", "ends", "flue", "resolution"):
         for value in sorted({getattr(made, measure) for made, _ in plans.values()}, key=str):
             own = {seed for seed, (made, _) in plans.items() if getattr(made, measure) == value}
             print(f"{measure:11}{said(value):10}{len(own & other):16}{len(own & racks):13}{len(own):6}")
     print(f"{'all':21}{len(other):16}{len(racks):13}{count:6}")
     for seed in sorted(other)[:NAMED]:
         made, plan = plans[seed]
-        measures = "  ".join(f"{field.name} {said(getattr(made, field.name))}" for field in fields(made)[:-1])
+        measures = "  ".join(
+            f"{field.name} {said(getattr(made, field.name))}" for field in fields(made) if field.name != "corner"
+        )
         told = "  ".join(f"{kind} {surveyed[seed][kind]} for {plan[kind]}" for kind in kinds if plan[kind])
         print(f"\n{seed}: {told}\n    {measures}")
 

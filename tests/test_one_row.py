@@ -130,3 +130,12 @@ def test_specks_between_an_aisle_and_the_way_past_its_end_bar_neither(seed: int)
     specks = np.random.default_rng(seed).random(picture.shape) < 0.001
     picture[specks & (picture == 254)] = 0
     assert labels(picture, "junction", "type") == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
+
+
+@pytest.mark.parametrize(("rack", "flue"), [(0.55, 0.3), (0.9, 0.2), (1.1, 0.25)])
+def test_a_row_of_racks_back_to_back_ends_where_both_do(rack: float, flue: float) -> None:
+    lows = [2.6, 2.6 + rack + flue]
+    racks: Boxes = [(left, low, left + 12, low + rack) for low in lows for left in (2.4, 16.8)]
+    picture = hall(31.2, 5.2 + 2 * rack + flue, racks)
+    assert labels(picture, "junction", "type") == ["L"] * 4 + ["T"] * 2
+    assert labels(picture, "corridor", "width") == pytest.approx([2.4] * 3 + [2.6] * 2, abs=0.25)

@@ -5,7 +5,7 @@
 
 use super::look::{BLOCKED, Look};
 use super::racks::Row;
-use super::runs::runs;
+use super::runs::{close, runs};
 use super::shares::Shares;
 use super::turned::Turned;
 use crate::grid::Frame;
@@ -36,6 +36,8 @@ const FRAME: (f64, f64) = (0.35, 0.9);
 /// What stands so near to a line lies on it, metres; what stands so near to the row's faces is not asked.
 const ON_LINE: f64 = 0.06;
 const ON_FACE: f64 = 0.1;
+/// Racks that stand back to back are so far apart at most, metres.
+const FLUE: f64 = 0.35;
 /// Places along such a line are so far apart, metres.
 const STEP: f64 = 0.05;
 
@@ -241,7 +243,12 @@ impl<'a> Columns<'a> {
                 samples.into_iter().map(|sample| sample > BLOCKED).collect()
             })
             .collect();
-        let stands = |lines: &[Vec<bool>]| (0..count).filter(|&k| lines.iter().any(|line| line[k])).count();
+        let stands = |lines: &[Vec<bool>]| {
+            let mut stands: Vec<bool> = (0..count).map(|k| lines.iter().any(|line| line[k])).collect();
+            // Where two racks stand back to back, each is a third of both at least.
+            close(&mut stands[count / 3..count - count / 3], (FLUE / STEP) as usize);
+            stands.into_iter().filter(|stands| *stands).count()
+        };
         let most = lines.windows(2 * near + 1).map(stands).max();
         most.unwrap_or(0) as f64 / count as f64
     }
