@@ -122,12 +122,20 @@ def outlined(depth: float) -> Picture:
 def test_racks_that_are_drawn_by_their_outlines_have_ways_around_and_none_within(depth: float) -> None:
     assert labels(outlined(depth), "junction", "type") == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
     assert len(labels(outlined(depth), "corridor", "name")) == 7
+    racks = groundplan.survey(outlined(depth), resolution=RESOLUTION).of_kind("rack")
+    assert [rack["width"] for rack in racks] == pytest.approx([depth] * 6, abs=0.15)
+    assert min(rack["confidence"] for rack in racks) > 0.5
 
 
-@pytest.mark.parametrize("seed", range(4))
+def test_corridors_whose_doors_are_all_shut_are_ways() -> None:
+    walls: Boxes = [(0, 2.0, 40, 2.1)]
+    assert labels(hall(40, 4.1, walls), "corridor", "width") == pytest.approx([2.0, 2.0], abs=0.15)
+
+
+@pytest.mark.parametrize("seed", range(6))
 def test_specks_between_an_aisle_and_the_way_past_its_end_bar_neither(seed: int) -> None:
     picture = hall(31.4, 15, [(2.6 + 9.6 * n, low, 9.6 + 9.6 * n, low + 1.5) for n in range(3) for low in (4.0, 9.5)])
-    specks = np.random.default_rng(seed).random(picture.shape) < 0.001
+    specks = np.random.default_rng(seed).random(picture.shape) < 0.002
     picture[specks & (picture == 254)] = 0
     assert labels(picture, "junction", "type") == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
 

@@ -234,9 +234,13 @@ def test_a_way_under_racks_is_told_and_one_around_them_keeps_off_them() -> None:
             assert apart.min() >= 0.4 - RESOLUTION / 2
     # A rack itself is gone up to.
     name = survey.of_kind("rack")[0]["name"]
-    up_to = survey.route(below, name, clearance=0.4, around_racks=True)
-    assert up_to is not None
-    assert up_to.racks == ()
+    for around_racks in (False, True):
+        up_to = survey.route(below, name, clearance=0.4, around_racks=around_racks)
+        assert up_to is not None
+        assert name not in up_to.racks
+    middle = np.mean(survey.of_kind("rack")[0]["axis"], axis=0)
+    with pytest.raises(ParameterError, match=f"is in {name}"):
+        survey.route(below, middle, clearance=0.4, around_racks=True)
 
 
 def test_places_are_points_names_and_faces() -> None:

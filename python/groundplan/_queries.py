@@ -32,8 +32,8 @@ LESS = "a smaller clearance may leave room"
 
 #: Clearances whose free space is kept ready.
 KEPT = 4
-#: A way is asked every so many metres whether it is in a rack, which are twice as deep at least.
-STEP = 0.2
+#: A way is asked every so many metres whether it is in a rack, which are deeper.
+STEP = 0.1
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -106,7 +106,7 @@ class Queries:
         if not _is_number(clearance) or not 0 <= clearance < math.inf:
             raise ParameterError("route.clearance", f"the clearance cannot be {clearance!r}", "metres from 0 on")
         ways = self.ways(float(clearance), around_racks, map)
-        start, end = (self.place(place, ways, clearance) for place in (a, b))
+        start, end = (self.place(place, ways, clearance, around_racks) for place in (a, b))
         found = ways.route(start, end)
         if found is None:
             return None
@@ -152,10 +152,14 @@ class Queries:
             taken.append(np.array(pillar["at"]) + half * np.array([[-1, -1], [1, 1], [-1, 1], [1, -1]]))
         return _core.Ways.of_survey(self.frame, _ragged(rings), np.concatenate(taken), closed, clearance)
 
-    def place(self, place: Place, ways: _core.Ways, clearance: float) -> tuple[float, float]:
+    def place(
+        self, place: Place, ways: _core.Ways, clearance: float, around_racks: bool = False
+    ) -> tuple[float, float]:
         """A point that a robot may stand on."""
         if isinstance(place, str):
             label = self._named(place)
+            if label["kind"] == "rack" and (before := self._before(label, ways, clearance)):
+                return before
             # A pillar is gone up to.
             beside = [label["width"] / 2 + clearance] if label["kind"] == "pillar" else []
             corners = [np.add(label["at"], side * by) for by in beside for side in (-1, 1)]
@@ -170,7 +174,7 @@ class Queries:
                 )
             ring, middle = cut.polygon(int(place)), cut.centres[place]
         else:
-            return self._point(place, ways, clearance)
+            return self._point(place, ways, clearance, around_racks)
         reach = float(np.hypot(*np.ptp(ring, axis=0))) / 2
         open = ways.nearest(float(middle[0]), float(middle[1]), reach)
         if open is None:
@@ -193,7 +197,21 @@ class Queries:
             raise ParameterError("route.name", f"no label is named {name!r}", hint)
         return names[name]
 
-    def _point(self, place: Any, ways: _core.Ways, clearance: float) -> tuple[float, float]:
+    def _before(self, rack: Label, ways: _core.Ways, clearance: float) -> tuple[float, float] | None:
+        """A point before one of a rack's sides, the long ones first: a rack is gone up to, be there floor in it."""
+        ring = np.asarray(rack["polygon"], dtype=np.float64)
+        sides = np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
+        lengths = np.hypot(*(sides[:, 1] - sides[:, 0]).T)
+        for side, length in sorted(zip(sides, lengths, strict=True), key=lambda pair: -pair[1]):
+            along = (side[1] - side[0]) / max(length, 1e-9)
+            # Rings go round counter-clockwise.
+            x, y = side.mean(axis=0) + (clearance + 2 * self.survey.map.resolution) * np.array([along[1], -along[0]])
+            open = ways.nearest(float(x), float(y), float(length) / 2)
+            if open and rack not in (self.survey.labels[n] for n in self.locator.labels_at(*open)):
+                return open[0], open[1]
+        return None
+
+    def _point(self, place: Any, ways: _core.Ways, clearance: float, around_racks: bool) -> tuple[float, float]:
         try:
             x, y = (float(value) for value in place)
         except (TypeError, ValueError, OverflowError):
@@ -209,7 +227,11 @@ class Queries:
             hint = LESS
             if nearest:
                 hint = f"the nearest point that is, is ({nearest[0]:.3f}, {nearest[1]:.3f})"
+            racks = [self.survey.labels[n] for n in self.locator.labels_at(x, y)]
+            under = [rack["name"] for rack in racks if rack["kind"] == "rack"] if around_racks else []
             said = f"({x:g}, {y:g}) is not free and {clearance:g} m from what is occupied"
+            if under:
+                said = f"({x:g}, {y:g}) is in {under[0]}, and racks are taken as occupied"
             raise ParameterError("route.blocked", said, hint)
         return x, y
 

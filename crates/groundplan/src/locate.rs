@@ -246,8 +246,8 @@ impl Polygons {
         }
         held
     }
-    /// The numbers of the polygons that hold a point of a way, of which one is asked every `step` metres and each bend;
-    /// ascending.
+    /// The numbers of the polygons that hold a point of a way, of which one is asked every `step` metres, more than 0, and
+    /// each bend; ascending.
     #[must_use]
     pub fn along(&self, way: &[[f64; 2]], step: f64) -> Vec<u32> {
         let held = way.windows(2).flat_map(|ends| {

@@ -22,7 +22,7 @@ const BESIDE: f64 = 0.7;
 /// What is barred within so much of the strip's sides is the sides, metres.
 const MARGIN: f64 = 0.1;
 
-/// A speck is less than so many rows of cells high and no more than so many columns long, of which two are beside it.
+/// A speck is no more than so many rows of cells high and so many columns long, of which two are beside it.
 const SPECK: (usize, usize) = (2, 4);
 /// What gets along a strip is so much of it wide.
 const GETS_THROUGH: f64 = 0.35;
@@ -113,7 +113,7 @@ fn without_specks(barred: &[Bits], count: usize) -> Vec<Bits> {
     let mut left = vec![Bits::new(count); barred.len()];
     for (n, (row, run)) in runs.into_iter().enumerate() {
         let [low, high, from, to] = boxes[pieces.of(n as u32) as usize];
-        if high - low >= SPECK.0 || to - from > SPECK.1 {
+        if high - low + 1 > SPECK.0 || to - from > SPECK.1 {
             left[row].fill(run);
         }
     }

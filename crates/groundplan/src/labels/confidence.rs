@@ -225,8 +225,8 @@ impl Looks<'_> {
         1.0 - width / beside(1.0).min(beside(-1.0)).max(width)
     }
 
-    /// Something stands in it all along, or posts come back at one pitch on both its faces where there is floor between
-    /// them, and both its faces were seen: of what lies behind a face that was not, nobody knows where it ends.
+    /// Something stands in it all along, or where there is floor between its faces posts come back at one pitch on both, or
+    /// both are closed; and both its faces were seen: of what lies behind a face that was not, nobody knows where it ends.
     fn rack(&self, axis: [[f64; 2]; 2], width: f64) -> f64 {
         let [_, across] = frame_of(axis);
         let places = along(axis, STEP);
@@ -245,7 +245,8 @@ impl Looks<'_> {
         let count = places.len() as f64;
         let taken = if taken < HOLLOW * count {
             let posts = [-1.0, 1.0].map(|side| self.posts(axis, side * width / 2.0));
-            taken.max(count * posts[0].min(posts[1]))
+            // Or it is drawn by its outline.
+            taken.max(count * posts[0].min(posts[1])).max(solid[0].min(solid[1]))
         } else {
             taken
         };

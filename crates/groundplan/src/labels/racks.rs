@@ -56,8 +56,9 @@ impl Row {
 
 /// Two faces are this far apart, metres: less is a wall, more is a room.
 pub const DEPTH: (f64, f64) = (0.5, 3.6);
-/// Between two corridors what is so deep may be a row of shelves or machines, metres, as others beside it are.
-const SHALLOW: f64 = 0.25;
+/// Between two corridors what is so deep from edge to edge, which is a pixel less than it is, may be a row of shelves or
+/// machines, metres, as others beside it are.
+const SHALLOW: f64 = 0.24;
 /// A row's piece is at least so long, metres.
 pub const SHORTEST: f64 = 1.2;
 /// Least share of a row that is taken.
@@ -293,7 +294,7 @@ pub fn crossed(
 /// True when something stands on both faces of a row over much of it, and hardly anywhere on one alone: it is drawn by its
 /// outline, and what floor shows within it nobody comes to.
 fn is_outlined(view: &Turned, row: &Row) -> bool {
-    let columns = view.column(row.along[0])..view.column(row.along[1]);
+    let columns = view.column(row.along[0])..view.column(row.along[1]).max(view.column(row.along[0]) + 1);
     let [one, two] = row.across.map(|face| view.some_occupied(columns.clone(), face - ON_FACE, face + ON_FACE));
     let stand = one.iter().zip(&two).map(|(one, two)| usize::from(*one > 0.0) + usize::from(*two > 0.0));
     let counts = stand.fold([0.0; 3], |mut counts, faces| {

@@ -14,9 +14,12 @@ use crate::ends::{overlap, shared, wider};
 const SIDED: f64 = 0.6;
 /// It does so from so far within the side to so far beyond, in widths.
 const SIDE: (f64, f64) = (0.1, 0.25);
-/// An outline is closed where something of it stands so near, metres, over so much of a side.
+/// An outline is closed where something of it stands so near, metres, but for gaps through which no robot comes, metres.
 const OUTLINE: f64 = 0.15;
-const CLOSED: f64 = 0.95;
+const WAY_IN: f64 = 0.5;
+/// So far beyond an end of it, metres, is floor where less than that share is not free.
+const BEYOND: (f64, f64) = (0.3, 1.3);
+const FLOOR: f64 = 0.5;
 /// Things are parted by more than so many metres.
 const PARTED: f64 = 0.3;
 
@@ -31,24 +34,36 @@ pub fn is_sided(view: &Turned, strip: &Strip) -> bool {
     })
 }
 
-/// True when a strip that is shut at both its ends is so all along its sides too, and another runs along it behind one of
-/// them: nothing leads into it, and it is the inside of a row that is drawn by its outline. Of all it is known where they
-/// lie.
+/// True when a strip that is shut at both its ends is so all along its sides too, is no wider than a row is deep, ends
+/// before floor, and another runs along it behind a side: nothing leads into it, and it is the inside of a row that is drawn
+/// by its outline. Of a corridor with all doors shut both ends are outer walls. Of all it is known where they lie.
 pub fn is_within_outline(view: &Turned, strips: &[Strip], placed: &[Beside], n: usize) -> bool {
     let own = &strips[n];
     let columns = view.column(own.along[0])..view.column(own.along[1]);
-    let is_closed = |side: f64| view.share_touched(columns.clone(), side - OUTLINE, side + OUTLINE) >= CLOSED;
+    let is_closed = |side: f64| {
+        let stands = view.some_occupied(columns.clone(), side - OUTLINE, side + OUTLINE);
+        let open: Vec<bool> = stands.iter().map(|share| *share == 0.0).collect();
+        runs(&open, true).iter().all(|(from, to)| ((to - from) as f64) * view.cell < WAY_IN)
+    };
+    let is_before_floor = |end: [f64; 2]| {
+        view.mean_blocked(view.column(end[0])..view.column(end[1]) + 1, own.across[0], own.across[1]) < FLOOR
+    };
+    let [low, high] = own.along;
+    let ends = [[low - BEYOND.1, low - BEYOND.0], [high + BEYOND.0, high + BEYOND.1]];
     let is_behind = |other: &Strip| {
         (-SAME..=DEPTH.0).contains(&-overlap(own.across, other.across))
             && overlap(own.along, other.along) >= (1.0 - ALIKE) * own.length()
     };
     let near = placed[own.direction].touching(own.along, wider(own.across, DEPTH.0));
-    own.across.into_iter().all(is_closed) && near.into_iter().any(|m| m != n && is_behind(&strips[m]))
+    own.width() <= DEPTH.1
+        && own.across.into_iter().all(is_closed)
+        && ends.into_iter().any(is_before_floor)
+        && near.into_iter().any(|m| m != n && is_behind(&strips[m]))
 }
 
-/// True when another that is like it runs beside a strip, as far as goods do not hide the shorter of the two, with a row between them of which several pieces stand, and ways
-/// lead between these from the one to the other: be there walls at all ends, rooms are not so. Of all it is known where they
-/// lie.
+/// True when another that is like it runs beside a strip, as far as goods do not hide the shorter of the two, with a row
+/// between them of which several pieces stand, and ways lead between these from the one to the other: be there walls at all
+/// ends, rooms are not so. Of all it is known where they lie.
 pub fn is_at_row(view: &Turned, strips: &[Strip], placed: &[Beside], n: usize) -> bool {
     let own = &strips[n];
     let is_like = |other: &&Strip| {

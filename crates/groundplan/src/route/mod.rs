@@ -156,7 +156,7 @@ fn fill(frame: &Frame, rings: &[Vec<[f64; 2]>], pixels: &mut Bits) {
             let (low, high) = if p[1] < q[1] { (p, q) } else { (q, p) };
             for y in row(low[1])..row(high[1]) {
                 let part = (y as f64 + 0.5 - low[1]) / (high[1] - low[1]);
-                crossings[y - first].push(low[0] + part * (high[0] - low[0]));
+                crossings[y.saturating_sub(first)].push(low[0] + part * (high[0] - low[0]));
             }
         }
     }
