@@ -136,7 +136,9 @@ impl Looks<'_> {
     /// True when something that is not free lies about a way's side.
     fn is_bounded(&self, at: [f64; 2], across: [f64; 2], side: f64, half: f64) -> bool {
         let reach = SIDE.map(|off| half + off);
-        let steps = ((reach[1] - reach[0]) / (STEP / 2.0)).ceil() as usize;
+        // Each pixel on the way, as a wall may be one thick; of fine maps walls are more.
+        let step = self.resolution().clamp(STEP / 8.0, STEP / 2.0);
+        let steps = ((reach[1] - reach[0]) / step).ceil() as usize;
         (0..=steps).any(|n| {
             let v = side * (reach[0] + (reach[1] - reach[0]) * n as f64 / steps as f64);
             !self.is_free([at[0] + v * across[0], at[1] + v * across[1]])
