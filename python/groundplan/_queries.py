@@ -112,7 +112,7 @@ class Queries:
             return None
         length = float(np.hypot(*np.diff(found, axis=0).T).sum())
         passed = [self.survey.labels[n] for n in self.locator.labels_along(found, STEP)]
-        racks = tuple(label["name"] for label in passed if label["kind"] == "rack")
+        racks = tuple(label["name"] for label in passed if label["kind"] == "rack" and "name" in label)
         return Route(self.locator.along(found), found, length, float(clearance), racks)
 
     def ways(self, clearance: float, around_racks: bool, map: Map | None) -> _core.Ways:
@@ -122,7 +122,7 @@ class Queries:
             if len(self._ways) == KEPT:
                 del self._ways[next(iter(self._ways))]
             racks = self.survey.of_kind("rack") if around_racks else ()
-            closed = _ragged([rack["polygon"] for rack in racks])
+            closed = _ragged([rack["polygon"] for rack in racks if "polygon" in rack])
             # The map is held with it, so that no other has its id.
             made = self._of_survey(closed, clearance) if map is None else self._of_map(closed, clearance, map)
             self._ways[key] = map, made
@@ -152,13 +152,12 @@ class Queries:
             taken.append(np.array(pillar["at"]) + half * np.array([[-1, -1], [1, 1], [-1, 1], [1, -1]]))
         return _core.Ways.of_survey(self.frame, _ragged(rings), np.concatenate(taken), closed, clearance)
 
-    def place(
-        self, place: Place, ways: _core.Ways, clearance: float, around_racks: bool = False
-    ) -> tuple[float, float]:
+    def place(self, place: Place, ways: _core.Ways, clearance: float, around_racks: bool) -> tuple[float, float]:
         """A point that a robot may stand on."""
         if isinstance(place, str):
             label = self._named(place)
-            if label["kind"] == "rack" and (before := self._before(label, ways, clearance)):
+            is_rack = label["kind"] == "rack" and "polygon" in label
+            if is_rack and (before := self._before(label, ways, clearance)):
                 return before
             # A pillar is gone up to.
             beside = [label["width"] / 2 + clearance] if label["kind"] == "pillar" else []
@@ -227,8 +226,8 @@ class Queries:
             hint = LESS
             if nearest:
                 hint = f"the nearest point that is, is ({nearest[0]:.3f}, {nearest[1]:.3f})"
-            racks = [self.survey.labels[n] for n in self.locator.labels_at(x, y)]
-            under = [rack["name"] for rack in racks if rack["kind"] == "rack"] if around_racks else []
+            held = [self.survey.labels[n] for n in self.locator.labels_at(x, y)] if around_racks else []
+            under = [label.get("name", "a rack") for label in held if label["kind"] == "rack"]
             said = f"({x:g}, {y:g}) is not free and {clearance:g} m from what is occupied"
             if under:
                 said = f"({x:g}, {y:g}) is in {under[0]}, and racks are taken as occupied"

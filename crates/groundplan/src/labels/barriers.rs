@@ -1,5 +1,6 @@
 //! Walls across a strip that leave no more than a door: a corridor ends there, and a room behind is no part of it.
 
+use super::rooms::{Run, touching};
 use super::shares::Shares;
 use super::turned::Turned;
 use crate::bits::Bits;
@@ -87,34 +88,31 @@ pub fn among(view: &Turned, across: [f64; 2], range: Range<usize>) -> Bits {
 
 /// Rows of columns without pieces that are no larger than a speck.
 fn without_specks(barred: &[Bits], count: usize) -> Vec<Bits> {
-    // Runs of all rows, and which of them hang together.
-    let runs: Vec<(usize, Range<usize>)> =
-        barred.iter().zip(0..).flat_map(|(row, n)| row.runs(0..count, true).map(move |run| (n, run))).collect();
-    let mut pieces = Sets::new(0);
-    let mut first = 0;
-    for (n, (row, run)) in runs.iter().enumerate() {
-        pieces.add();
-        while runs[first].0 + 1 < *row {
-            first += 1;
-        }
-        for (m, (_, other)) in runs[first..n].iter().enumerate().filter(|(_, (below, _))| below < row) {
-            if other.start <= run.end && run.start <= other.end {
-                pieces.join_first(n as u32, (first + m) as u32);
-            }
-        }
-    }
-    // From its first row and column to its last ones.
-    let mut boxes = vec![[usize::MAX, 0, usize::MAX, 0]; runs.len()];
-    for (n, (row, run)) in runs.iter().enumerate() {
-        let [low, high, from, to] = &mut boxes[pieces.of(n as u32) as usize];
-        (*low, *high) = ((*low).min(*row), (*high).max(*row));
-        (*from, *to) = ((*from).min(run.start), (*to).max(run.end));
+    // As pixels, no two rows of which meet at their ends.
+    let width = count + 2;
+    let on_row = |(row, n): (&Bits, usize)| -> Vec<Run> {
+        let place = n * width;
+        row.runs(0..count, true).map(|run| Run::new(&(place + run.start..place + run.end), 0)).collect()
+    };
+    let runs: Vec<Run> = barred.iter().zip(0..).flat_map(on_row).collect();
+    let mut sets = Sets::new(runs.len());
+    touching(&runs, width, 1, |own, below| sets.join_first(own as u32, below as u32));
+    let (pieces, found) = sets.numbered();
+    let row_of = |run: &Run| run.pixels().start / width;
+    let columns_of = |run: &Run| run.pixels().start % width..run.pixels().end - row_of(run) * width;
+    // Of each piece its first row and column and its last ones.
+    let mut boxes = vec![[usize::MAX, 0, usize::MAX, 0]; found + 1];
+    for (run, &piece) in runs.iter().zip(&pieces) {
+        let (row, columns) = (row_of(run), columns_of(run));
+        let [low, high, from, to] = &mut boxes[piece as usize];
+        (*low, *high) = ((*low).min(row), (*high).max(row));
+        (*from, *to) = ((*from).min(columns.start), (*to).max(columns.end));
     }
     let mut left = vec![Bits::new(count); barred.len()];
-    for (n, (row, run)) in runs.into_iter().enumerate() {
-        let [low, high, from, to] = boxes[pieces.of(n as u32) as usize];
+    for (run, &piece) in runs.iter().zip(&pieces) {
+        let [low, high, from, to] = boxes[piece as usize];
         if high - low + 1 > SPECK.0 || to - from > SPECK.1 {
-            left[row].fill(run);
+            left[row_of(run)].fill(columns_of(run));
         }
     }
     left

@@ -2,18 +2,17 @@
 //! many; all others are niches.
 
 use super::beside::{Beside, placed};
-use super::corridors::{ALONE, Strip};
+use super::corridors::{ALIKE, ALONE, Strip};
 use super::junctions::{self, Meeting};
 use super::racks::{self, DEPTH};
 use super::sided;
 use super::turned::Turned;
 use crate::ends::{overlap, shared, wider};
 
-/// A corridor that meets no other and is shorter than one alone is so long, metres, and so many others run beside it, no
-/// more than a rack away, that are as wide and as long but for this share.
+/// A corridor that meets no other and is shorter than one alone is so long, metres, and so many others that are alike run
+/// beside it, no more than a rack away.
 const RECURS: f64 = 3.5;
 const OTHERS: usize = 2;
-pub const ALIKE: f64 = 0.2;
 /// One that is shut at both its ends, be it with a door, is so many times as long as wide: else it is a room. And where
 /// no such others run beside it something stands along both its sides: else it is what furniture leaves of a room.
 const SHUT: f64 = 4.5;
@@ -136,7 +135,7 @@ fn alike(strips: &[Strip], placed: &[Beside], n: usize, beyond: Beyond, counts: 
     let own = &strips[n];
     let is_like = |other: &&Strip| {
         other.direction == own.direction
-            && own.is_as_wide(other, ALIKE)
+            && own.is_as_wide(other)
             && overlap(own.along, other.along) >= (1.0 - ALIKE) * beyond.of_both(own.length(), other.length())
     };
     let [nearest, farthest] = beyond.apart();

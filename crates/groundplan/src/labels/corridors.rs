@@ -52,9 +52,9 @@ impl Strip {
         self.length() < ALONE.1.max(ALONE.0 * self.width())
     }
 
-    /// True when another is as wide but for a share of the wider.
-    pub fn is_as_wide(&self, other: &Self, share: f64) -> bool {
-        (self.width() - other.width()).abs() <= share * self.width().max(other.width())
+    /// True when another is as wide.
+    pub fn is_as_wide(&self, other: &Self) -> bool {
+        (self.width() - other.width()).abs() <= ALIKE * self.width().max(other.width())
     }
 
     /// Its direction and its places, as [`placed`] takes them.
@@ -70,6 +70,8 @@ impl Strip {
 
 /// A corridor that meets no other is at least so many times as long as wide, and so long, metres.
 pub const ALONE: (f64, f64) = (2.0, 5.0);
+/// Corridors are as wide, or as long, as one another but for this share.
+pub const ALIKE: f64 = 0.2;
 /// Strips whose directions differ by an angle of a smaller sine run nearly the same way.
 pub const ASKEW: f64 = 0.5;
 

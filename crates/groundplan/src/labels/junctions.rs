@@ -111,10 +111,10 @@ pub fn find(views: &[Turned], strips: &[Strip], threads: usize) -> Vec<Meeting> 
 /// True when of some corridors one runs beside one of others with something between them: these lead to two junctions, be
 /// they as near as narrow aisles are.
 fn are_beside(strips: &[Strip], some: &[usize], others: &[usize]) -> bool {
-    let are_beside = |one: &Strip, two: &Strip| {
+    let is_apart = |one: &Strip, two: &Strip| {
         one.direction == two.direction && overlap(one.across, two.across) < 0.0 && overlap(one.along, two.along) > SAME
     };
-    some.iter().any(|&one| others.iter().any(|&two| are_beside(&strips[one], &strips[two])))
+    some.iter().any(|&one| others.iter().any(|&two| is_apart(&strips[one], &strips[two])))
 }
 
 /// A corridor that leads from one junction to another is a way out of both, be what goes on there as wide as it is long.

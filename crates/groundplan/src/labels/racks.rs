@@ -8,6 +8,7 @@ use super::corridors::{self, Strip};
 use super::near::Near;
 use super::turned::{Turned, least_sine};
 use crate::ends::{overlap, sorted, wider};
+use std::ops::Range;
 
 /// A piece of a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,13 +64,13 @@ const SHALLOW: f64 = 0.24;
 pub const SHORTEST: f64 = 1.2;
 /// Least share of a row that is taken.
 const TAKEN: f64 = 0.12;
+/// The same where no corridor runs along its other side.
+const TAKEN_OUTSIDE: f64 = 0.5;
+const SEEN_OUTSIDE: f64 = 0.5;
 /// What stands so near to a face, metres, stands on it; it does on both faces of an outline over so much of it, and for
 /// each such part on one alone over so much.
 const ON_FACE: f64 = 0.15;
 const OUTLINED: (f64, f64) = (0.5, 0.05);
-/// The same where no corridor runs along its other side.
-const TAKEN_OUTSIDE: f64 = 0.5;
-const SEEN_OUTSIDE: f64 = 0.5;
 /// The corridors along a rack are so many times as long as a gap in it.
 const LONGER: f64 = 1.5;
 /// A place has racks when it has so many, and so many metres of them for a metre of corridor.
@@ -294,19 +295,21 @@ pub fn crossed(
 /// True when something stands on both faces of a row over much of it, and hardly anywhere on one alone: it is drawn by its
 /// outline, and what floor shows within it nobody comes to.
 fn is_outlined(view: &Turned, row: &Row) -> bool {
-    let columns = view.column(row.along[0])..view.column(row.along[1]).max(view.column(row.along[0]) + 1);
-    let [one, two] = row.across.map(|face| view.some_occupied(columns.clone(), face - ON_FACE, face + ON_FACE));
-    let stand = one.iter().zip(&two).map(|(one, two)| usize::from(*one > 0.0) + usize::from(*two > 0.0));
-    let counts = stand.fold([0.0; 3], |mut counts, faces| {
-        counts[faces] += 1.0;
-        counts
-    });
-    let [_, alone, both] = counts;
-    both >= OUTLINED.0 * columns.len() as f64 && alone <= OUTLINED.1 * both
+    let [one, two] = row.across.map(|face| view.some_occupied(columns(view, row), face - ON_FACE, face + ON_FACE));
+    let stand = |on: fn(bool, bool) -> bool| {
+        one.iter().zip(&two).filter(|(one, two)| on(**one > 0.0, **two > 0.0)).count() as f64
+    };
+    let both = stand(|one, two| one && two);
+    both >= OUTLINED.0 * one.len() as f64 && stand(|one, two| one != two) <= OUTLINED.1 * both
 }
 
 /// Share of a row that is not free.
 fn taken(view: &Turned, row: &Row) -> f64 {
-    let columns = view.column(row.along[0])..view.column(row.along[1]).max(view.column(row.along[0]) + 1);
-    view.mean_blocked(columns, row.across[0], row.across[1])
+    view.mean_blocked(columns(view, row), row.across[0], row.across[1])
+}
+
+/// The columns of a row, one at least.
+fn columns(view: &Turned, row: &Row) -> Range<usize> {
+    let [from, to] = row.along.map(|u| view.column(u));
+    from..to.max(from + 1)
 }

@@ -37,7 +37,7 @@ const FRAME: (f64, f64) = (0.35, 0.9);
 const ON_LINE: f64 = 0.06;
 const ON_FACE: f64 = 0.1;
 /// Racks that stand back to back are so far apart at most, metres.
-const FLUE: f64 = 0.35;
+const FLUE: f64 = 0.3;
 /// Places along such a line are so far apart, metres.
 const STEP: f64 = 0.05;
 
@@ -246,7 +246,7 @@ impl<'a> Columns<'a> {
         let stands = |lines: &[Vec<bool>]| {
             let mut stands: Vec<bool> = (0..count).map(|k| lines.iter().any(|line| line[k])).collect();
             // Where two racks stand back to back, each is a third of both at least.
-            close(&mut stands[count / 3..count - count / 3], (FLUE / STEP) as usize);
+            close(&mut stands[count / 3..count - count / 3], (FLUE / STEP).round() as usize);
             stands.into_iter().filter(|stands| *stands).count()
         };
         let most = lines.windows(2 * near + 1).map(stands).max();

@@ -2,8 +2,7 @@
 //! between it and another.
 
 use super::beside::Beside;
-use super::connected::ALIKE;
-use super::corridors::Strip;
+use super::corridors::{ALIKE, Strip};
 use super::racks::{self, DEPTH, SAME};
 use super::runs::{close, runs};
 use super::sections::{self, WIDTH};
@@ -67,8 +66,7 @@ pub fn is_within_outline(view: &Turned, strips: &[Strip], placed: &[Beside], n: 
 pub fn is_at_row(view: &Turned, strips: &[Strip], placed: &[Beside], n: usize) -> bool {
     let own = &strips[n];
     let is_like = |other: &&Strip| {
-        own.is_as_wide(other, ALIKE)
-            && overlap(own.along, other.along) >= (1.0 - ALIKE) * own.length().min(other.length())
+        own.is_as_wide(other) && overlap(own.along, other.along) >= (1.0 - ALIKE) * own.length().min(other.length())
     };
     let near = placed[own.direction].touching(own.along, wider(own.across, DEPTH.1));
     near.into_iter().map(|m| &strips[m]).filter(is_like).any(|other| {

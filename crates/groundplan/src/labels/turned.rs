@@ -11,6 +11,7 @@ use super::shares::Shares;
 use super::summed::{Part, Summed};
 use super::sums::{Cells, Source, Told, What};
 use crate::bits::Bits;
+use crate::grid::rounded;
 use crate::on_line::OnLine;
 use crate::radiograms::weight;
 use std::ops::Range;
@@ -454,12 +455,7 @@ impl Turned {
 
     /// The cells across between two places: from, to.
     fn cells(&self, low: f64, high: f64) -> (usize, usize) {
-        let at = |v: f64| {
-            // Rounded without the call that it is on machines that may lack the instruction.
-            let place = ((v - self.start[1]) / self.cell).clamp(0.0, self.size[1] as f64);
-            let whole = place as usize;
-            whole + usize::from(place - whole as f64 >= 0.5)
-        };
+        let at = |v: f64| rounded(((v - self.start[1]) / self.cell).clamp(0.0, self.size[1] as f64)) as usize;
         (at(low), at(high).max(at(low)))
     }
 }

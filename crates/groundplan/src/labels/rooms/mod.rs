@@ -35,6 +35,7 @@ use fine::Fine;
 pub use gaps::Bar;
 pub use raster::Raster;
 use regions::Region;
+pub use runs::{Run, touching};
 
 /// A gap and a narrow whose ends are this near are one opening; so are pieces of openings that come this near, metres.
 const TOGETHER: f64 = 0.35;
