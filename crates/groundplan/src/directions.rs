@@ -1,11 +1,11 @@
 //! II-A: the histogram of oriented gradients finds the directions, the sharpness of their radiograms measures them.
 
+use crate::aligned::{ALIGNED_DEG, aligned, take};
+use crate::candidate::{CONTROLS_DEG, Candidate, NONE_QUIET, SQUARE, WING, alone, is_square, seconds, wings};
 use crate::gradients::Gradients;
 use crate::grid::{Frame, angle_between, tidy, tidy_angle, undirected};
 use crate::oriented::{BINS, Oriented};
 use crate::parameters::Parameters;
-use crate::projection::{Across, Sum};
-use crate::radiograms::{UNIT, metres_per_unit};
 use crate::sharpness::{SCAN_DEG, sharpest};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -28,22 +28,8 @@ const SMOOTHING: usize = 6;
 const LOWEST_CANDIDATE: f64 = 0.04;
 /// How many candidates are measured at most.
 const MOST_CANDIDATES: usize = 16;
-/// Where to look for what lines up by chance, degrees from a candidate.
-const CONTROLS_DEG: [f64; 6] = [-26.0, -19.0, -13.0, 13.0, 19.0, 26.0];
-const NONE_QUIET: [bool; CONTROLS_DEG.len()] = [false; CONTROLS_DEG.len()];
-/// A pixel speaks for a direction when it lies within this angle of it, degrees.
-const ALIGNED_DEG: f64 = 6.0;
 /// A direction has this many times as much lined up as chance has.
 const CONTRAST: f64 = 3.0;
-/// So many of the controls may lie on other directions.
-const OTHERS_AMONG_CONTROLS: usize = 4;
-/// Where there would be one direction only, a second one needs this share of its structure.
-const SECOND: f64 = 0.04;
-/// And one that is square to the first, to so many degrees, this share.
-const SQUARE: (f64, f64) = (0.3, 0.015);
-/// Two weak ones that are square to one another, to so many degrees, are a wing's when each has this share: what is no
-/// wall lines up along one angle, if at all.
-const WING: (f64, f64) = (1.0, 0.03);
 /// Beside a direction there may be another that has more, unless as much lined up along the one that was found as this
 /// share of what lies along the new one. What the weaker one took stays with it: hardly anything lined up there.
 const LINED_UP: f64 = 0.5;
@@ -57,10 +43,6 @@ const HALF_KNOWN: f64 = 0.5;
 const PARTS_BITS: u32 = 15;
 /// Of a large map so many more that this moves the end of a line against its middle by no more than that, pixels.
 const MOST_MOVED: f64 = 0.1;
-/// A line shorter than this many pixels says nothing of a direction.
-const SHORTEST_PIXELS: f64 = 20.0;
-/// Half the window of the background that a line must stand out of, pixels.
-const BACKGROUND_PIXELS: usize = 20;
 
 /// Finds the dominant directions, or measures how much lines up along those that are given.
 ///
@@ -83,7 +65,7 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
         None => {
             let (strong, weak): (Vec<_>, Vec<_>) =
                 found.into_iter().partition(|f| f.metres >= parameters.directions_min_weight * strongest);
-            found = strong.into_iter().filter(|f| f.exceeds_chance(OTHERS_AMONG_CONTROLS)).collect();
+            found = strong.into_iter().filter(|f| f.exceeds_chance()).collect();
             let wings = wings(&weak, &found, strongest, parameters);
             found.extend(seconds(&weak, &found));
             found.extend(wings);
@@ -97,74 +79,6 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
         histogram,
         explained: if total > 0.0 { tidy((sum / total).min(1.0)) } else { 0.0 },
     }
-}
-
-/// A direction that may be one.
-#[derive(Clone, Copy)]
-struct Candidate {
-    angle: f64,
-    /// Metres of structure that line up along it.
-    metres: f64,
-    /// At which of the controls clearly less lines up: scattered pixels line up there as well as they do here.
-    quiet: [bool; CONTROLS_DEG.len()],
-}
-
-impl Candidate {
-    /// Clearly more lines up here than beside; so many of the controls may lie on other directions.
-    fn exceeds_chance(&self, others: usize) -> bool {
-        self.quiet.iter().filter(|quiet| !**quiet).count() <= others
-    }
-
-    /// The same of a weak one: what lines up along strong ones and square to them tells nothing, of the rest one may.
-    fn exceeds_chance_beside(&self, strong: &[Candidate]) -> bool {
-        let near = ALIGNED_DEG.to_radians();
-        let is_known = |turn: f64| strong.iter().any(|f| is_of(f, self.angle + turn.to_radians(), near));
-        CONTROLS_DEG.iter().zip(self.quiet).filter(|&(turn, quiet)| !quiet && !is_known(*turn)).count() <= 1
-    }
-}
-
-/// A ground plan has two directions, be it only by the ends of its racks, and so has each wing of it: of the weak ones
-/// those square to a strong one that has no such other. Beside a single one the second need not be square. Where no two
-/// strong ones are square to one another the plan may be skewed, and goods square to its racks are no second wing's
-/// ends: then each has such a weak one, or none has.
-fn seconds(weak: &[Candidate], strong: &[Candidate]) -> Vec<Candidate> {
-    let share = |f: &Candidate, to: &Candidate| match (is_square(f.angle, to, SQUARE.0), strong.len()) {
-        (true, _) => SQUARE.1,
-        (false, 1) => SECOND,
-        (false, _) => f64::INFINITY,
-    };
-    let is_its =
-        |f: &Candidate, to: &Candidate| f.metres >= share(f, to) * to.metres && f.exceeds_chance_beside(strong);
-    let found: Vec<Candidate> = alone(strong).filter_map(|to| weak.iter().copied().find(|f| is_its(f, to))).collect();
-    let is_skewed = alone(strong).count() == strong.len() && found.len() < strong.len();
-    if is_skewed { Vec::new() } else { found }
-}
-
-/// Those of a wing that is small beside the whole: none of them is known by a strong one, but they are by one another. What
-/// is so near to a strong one that its pixels speak for that one too is a part of its hall that the map has turned.
-fn wings(weak: &[Candidate], strong: &[Candidate], strongest: f64, parameters: &Parameters) -> Vec<Candidate> {
-    let tolerance = parameters.radiograms_tolerance_deg.to_radians();
-    let may_be = |f: &&Candidate| {
-        let is_known = strong.iter().any(|to| is_of(to, f.angle, tolerance));
-        f.metres >= WING.1 * strongest && f.exceeds_chance_beside(strong) && !is_known
-    };
-    let own: Vec<Candidate> = weak.iter().filter(may_be).copied().collect();
-    own.iter().filter(|f| own.iter().any(|other| is_square(other.angle, f, WING.0))).copied().collect()
-}
-
-/// Those that have no other square to them.
-fn alone(strong: &[Candidate]) -> impl Iterator<Item = &Candidate> {
-    strong.iter().filter(|f| !strong.iter().any(|other| is_square(other.angle, f, SQUARE.0)))
-}
-
-/// True when an angle is within so much of a direction, or of what is square to it.
-fn is_of(direction: &Candidate, angle: f64, within: f64) -> bool {
-    let by = angle_between(direction.angle, angle);
-    by <= within || FRAC_PI_2 - by <= within
-}
-
-fn is_square(angle: f64, to: &Candidate, within_deg: f64) -> bool {
-    FRAC_PI_2 - angle_between(angle, to.angle) <= within_deg.to_radians()
 }
 
 /// How much lines up along the directions that are given, degrees in the map frame; each once.
@@ -253,7 +167,7 @@ fn least(
     if parameters.directions_count.is_some() {
         return 0.0;
     }
-    let is_strong = |f: &&Candidate| f.metres >= weight * strongest && f.exceeds_chance(OTHERS_AMONG_CONTROLS);
+    let is_strong = |f: &&Candidate| f.metres >= weight * strongest && f.exceeds_chance();
     let strong: Vec<Candidate> = found.iter().filter(is_strong).copied().collect();
     if strong.len() < 2 {
         return weight.min(SQUARE.1) * strongest;
@@ -319,58 +233,4 @@ fn settled(diagonal: f64, angle: f64) -> f64 {
         part /= 2.0;
     }
     (angle / part).round() * part
-}
-
-/// Structure that lines up along an angle.
-struct Aligned {
-    /// Metres that stand out of the background as lines.
-    metres: f64,
-    /// How it was projected, and for each bin whether a line lies there.
-    across: Across,
-    on_line: Vec<bool>,
-}
-
-fn aligned(frame: &Frame, rest: &Oriented, angle: f64, threads: usize) -> Aligned {
-    let points = rest.along(angle, ALIGNED_DEG.to_radians());
-    let across = points.across(angle, 1, 1);
-    let mut sums = Vec::new();
-    points.sums(&across, &mut sums, threads);
-    let unit = metres_per_unit(frame, angle) / frame.resolution * UNIT as f64;
-    let mut before = 0u64;
-    let part = |&sum: &u64| u64::from(u64::on_bin(std::mem::replace(&mut before, sum), sum));
-    let values: Vec<u64> = sums.iter().map(part).collect();
-    let mut sum = 0;
-    let add = |value: &u64| {
-        sum += value;
-        sum
-    };
-    let sums: Vec<u64> = std::iter::once(0).chain(values.iter().map(add)).collect();
-    let over = |from: usize, to: usize| (sums[to.min(values.len())] - sums[from]) as f64 * unit;
-    let mut on_line = vec![false; values.len()];
-    let mut metres = 0.0;
-    let mut n = 1;
-    while n + 1 < values.len() {
-        let peak = over(n - 1, n + 2);
-        n += 1;
-        // Hardly any is as high.
-        if peak <= SHORTEST_PIXELS || values[n - 1] < values[n - 2] || values[n - 1] <= values[n] {
-            continue;
-        }
-        let (from, to) = ((n - 1).saturating_sub(BACKGROUND_PIXELS), (n + BACKGROUND_PIXELS).min(values.len()));
-        let around = (over(from, to) - peak) / (to - from) as f64 * 3.0;
-        if peak > 2.0 * around {
-            metres += (peak - around) * frame.resolution;
-            on_line[n.saturating_sub(3)..(n + 2).min(values.len())].fill(true);
-            n += 1;
-        }
-    }
-    Aligned { metres, across, on_line }
-}
-
-/// Takes out the pixels on lines.
-fn take(rest: &mut Oriented, angle: f64, lines: &Aligned, parameters: &Parameters) {
-    let tolerance = parameters.radiograms_tolerance_deg.to_radians();
-    let is_on_line =
-        |centre: [f32; 2]| lines.across.nearest(centre).and_then(|bin| lines.on_line.get(bin)).is_some_and(|on| *on);
-    rest.remove(angle, tolerance, is_on_line);
 }

@@ -25,9 +25,11 @@
 #![forbid(unsafe_code)]
 
 pub mod adjacency;
+mod aligned;
 pub mod arrangement;
 mod bands;
 mod bits;
+mod candidate;
 mod coverage;
 mod crossings;
 pub mod directions;

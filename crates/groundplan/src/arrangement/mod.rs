@@ -1,11 +1,13 @@
 //! II-C: lines -> half-edges, for any number of directions.
 //!
 //! Lines live on a lattice (`lattice.rs`), so no input is degenerate. Lines of one direction are parallel, so they cross
-//! any other line in the order of their offsets: nothing is sorted that comes sorted, and the cost grows with what is made
-//! (`builder.rs`). The faces are what the half-edges go around (`faces.rs`).
+//! any other line in the order of their offsets (`families.rs`): nothing is sorted that comes sorted (`along.rs`), and the
+//! cost grows with what is made (`builder.rs`). The faces are what the half-edges go around (`faces.rs`).
 
+mod along;
 mod builder;
 mod faces;
+mod families;
 mod lattice;
 
 use crate::grid::Frame;

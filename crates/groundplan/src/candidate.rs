@@ -1,0 +1,88 @@
+//! II-A: which of the angles that structure lines up along are directions of one ground plan.
+
+use crate::aligned::ALIGNED_DEG;
+use crate::grid::angle_between;
+use crate::parameters::Parameters;
+use std::f64::consts::FRAC_PI_2;
+
+/// Where to look for what lines up by chance, degrees from a candidate.
+pub const CONTROLS_DEG: [f64; 6] = [-26.0, -19.0, -13.0, 13.0, 19.0, 26.0];
+pub const NONE_QUIET: [bool; CONTROLS_DEG.len()] = [false; CONTROLS_DEG.len()];
+/// So many of the controls may lie on other directions.
+const OTHERS_AMONG_CONTROLS: usize = 4;
+/// Where there would be one direction only, a second one needs this share of its structure.
+const SECOND: f64 = 0.04;
+/// And one that is square to the first, to so many degrees, this share.
+pub const SQUARE: (f64, f64) = (0.3, 0.015);
+/// Two weak ones that are square to one another, to so many degrees, are a wing's when each has this share: what is no
+/// wall lines up along one angle, if at all.
+pub const WING: (f64, f64) = (1.0, 0.03);
+
+/// A direction that may be one.
+#[derive(Clone, Copy)]
+pub struct Candidate {
+    pub angle: f64,
+    /// Metres of structure that line up along it.
+    pub metres: f64,
+    /// At which of the controls clearly less lines up: scattered pixels line up there as well as they do here.
+    pub quiet: [bool; CONTROLS_DEG.len()],
+}
+
+impl Candidate {
+    /// Clearly more lines up here than beside.
+    pub fn exceeds_chance(&self) -> bool {
+        self.quiet.iter().filter(|quiet| !**quiet).count() <= OTHERS_AMONG_CONTROLS
+    }
+
+    /// The same of a weak one: what lines up along strong ones and square to them tells nothing, of the rest one may.
+    fn exceeds_chance_beside(&self, strong: &[Candidate]) -> bool {
+        let near = ALIGNED_DEG.to_radians();
+        let is_known = |turn: f64| strong.iter().any(|f| is_of(f, self.angle + turn.to_radians(), near));
+        CONTROLS_DEG.iter().zip(self.quiet).filter(|&(turn, quiet)| !quiet && !is_known(*turn)).count() <= 1
+    }
+}
+
+/// A ground plan has two directions, be it only by the ends of its racks, and so has each wing of it: of the weak ones
+/// those square to a strong one that has no such other. Beside a single one the second need not be square. Where no two
+/// strong ones are square to one another the plan may be skewed, and goods square to its racks are no second wing's
+/// ends: then each has such a weak one, or none has.
+pub fn seconds(weak: &[Candidate], strong: &[Candidate]) -> Vec<Candidate> {
+    let share = |f: &Candidate, to: &Candidate| match (is_square(f.angle, to, SQUARE.0), strong.len()) {
+        (true, _) => SQUARE.1,
+        (false, 1) => SECOND,
+        (false, _) => f64::INFINITY,
+    };
+    let is_its =
+        |f: &Candidate, to: &Candidate| f.metres >= share(f, to) * to.metres && f.exceeds_chance_beside(strong);
+    let found: Vec<Candidate> = alone(strong).filter_map(|to| weak.iter().copied().find(|f| is_its(f, to))).collect();
+    let is_skewed = alone(strong).count() == strong.len() && found.len() < strong.len();
+    if is_skewed { Vec::new() } else { found }
+}
+
+/// Those of a wing that is small beside the whole: none of them is known by a strong one, but they are by one another. What
+/// is so near to a strong one that its pixels speak for that one too is a part of its hall that the map has turned.
+pub fn wings(weak: &[Candidate], strong: &[Candidate], strongest: f64, parameters: &Parameters) -> Vec<Candidate> {
+    let tolerance = parameters.radiograms_tolerance_deg.to_radians();
+    let may_be = |f: &&Candidate| {
+        let is_known = strong.iter().any(|to| is_of(to, f.angle, tolerance));
+        f.metres >= WING.1 * strongest && f.exceeds_chance_beside(strong) && !is_known
+    };
+    let own: Vec<Candidate> = weak.iter().filter(may_be).copied().collect();
+    own.iter().filter(|f| own.iter().any(|other| is_square(other.angle, f, WING.0))).copied().collect()
+}
+
+/// Those that have no other square to them.
+pub fn alone(strong: &[Candidate]) -> impl Iterator<Item = &Candidate> {
+    strong.iter().filter(|f| !strong.iter().any(|other| is_square(other.angle, f, SQUARE.0)))
+}
+
+/// True when an angle is within so much of a direction, or of what is square to it.
+fn is_of(direction: &Candidate, angle: f64, within: f64) -> bool {
+    let by = angle_between(direction.angle, angle);
+    by <= within || FRAC_PI_2 - by <= within
+}
+
+/// True when an angle is square to a direction, to so many degrees.
+pub fn is_square(angle: f64, to: &Candidate, within_deg: f64) -> bool {
+    FRAC_PI_2 - angle_between(angle, to.angle) <= within_deg.to_radians()
+}
