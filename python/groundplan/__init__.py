@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from groundplan import roadmap as roadmap
     from groundplan import simulate as simulate
     from groundplan._errors import FormatError, GroundplanError, MapError, ParameterError
+    from groundplan._pipeline import survey
     from groundplan._queries import Route
     from groundplan._results import (
         Adjacency,
@@ -47,7 +48,7 @@ if TYPE_CHECKING:
         find_walls,
         subdivide,
     )
-    from groundplan.survey import Survey, survey
+    from groundplan.survey import Survey
 
     __version__: str
 
@@ -88,6 +89,9 @@ __all__ = [
 #: Modules that are imported, too, when they are first asked for.
 _MODULES = ("evaluate", "export", "figures", "maps", "roadmap", "simulate")
 
+#: Each has what it makes and what the ones before it made.
+_HOMES = ("_errors", "maps", "stages", "survey", "_pipeline")
+
 if not TYPE_CHECKING:  # a type checker would take any name at all for one that __getattr__ gives
 
     def __getattr__(name: str) -> object:
@@ -103,8 +107,7 @@ if not TYPE_CHECKING:  # a type checker would take any name at all for one that 
         if name == "parameters":
             value = import_module("groundplan.parameters").table
         else:
-            # Each module has what it makes and what the ones before it made.
-            homes = (import_module(f"groundplan.{home}") for home in ("_errors", "maps", "stages", "survey"))
+            homes = (import_module(f"groundplan.{home}") for home in _HOMES)
             value = next(vars(home)[name] for home in homes if name in vars(home))
         globals()[name] = value
         return value

@@ -133,7 +133,7 @@ def survey_site(
     Of a map that the workers read, what is here are the states of its pixels. Where each state is one value, as in most
     maps, that is the map itself, and the survey keeps it; else each state is drawn in its commonest value.
     """
-    from groundplan.survey import surveyed
+    from groundplan._pipeline import surveyed
 
     checked(client)
     map, far, values = site.map, site.distant, named(parameters)

@@ -38,7 +38,7 @@ Area = tuple[Span, Span]
 
 def update(survey: Survey, change: Any, row: int | None, column: int | None, threads: int | None) -> Survey:
     """As `Survey.update`."""
-    from groundplan.survey import surveyed
+    from groundplan._pipeline import surveyed
 
     known = survey.__dict__
     old: Map | None = known.get("_map")

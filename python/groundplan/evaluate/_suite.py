@@ -19,13 +19,13 @@ import numpy.typing as npt
 
 from groundplan import simulate
 from groundplan._errors import GroundplanError
+from groundplan._pipeline import survey
 from groundplan.evaluate import Case, _reliability, _scores, score, score_regions, suite
 from groundplan.evaluate._names import name_scores
 from groundplan.evaluate._roads import read_route, road_scores
 from groundplan.maps import Map, read
 from groundplan.parameters import resolve, table
 from groundplan.stages import cores
-from groundplan.survey import survey
 
 Answer = TypeVar("Answer")
 

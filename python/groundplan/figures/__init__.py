@@ -17,6 +17,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from groundplan._pipeline import survey as make_survey
 from groundplan._queries import Route
 from groundplan.figures._details import coarse_and_fine
 from groundplan.figures._directions import directions, radiograms
@@ -30,7 +31,6 @@ from groundplan.maps import Map
 from groundplan.parameters import table
 from groundplan.roadmap import RoadMap
 from groundplan.survey import Survey
-from groundplan.survey import survey as make_survey
 
 __all__ = ["draw_figures", "draw_road_map", "draw_route", "draw_survey"]
 
