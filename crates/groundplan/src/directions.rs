@@ -65,7 +65,7 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
         None => {
             let (strong, weak): (Vec<_>, Vec<_>) =
                 found.into_iter().partition(|f| f.metres >= parameters.directions_min_weight * strongest);
-            found = strong.into_iter().filter(|f| f.exceeds_chance()).collect();
+            found = strong.into_iter().filter(Candidate::exceeds_chance).collect();
             let wings = wings(&weak, &found, strongest, parameters);
             found.extend(seconds(&weak, &found));
             found.extend(wings);

@@ -14,12 +14,15 @@ mod fill;
 mod fine;
 mod gaps;
 mod islands;
+mod joining;
 mod leaves;
 mod narrows;
+mod openings;
 mod outlines;
 mod raster;
 mod regions;
 mod runs;
+mod squared;
 
 use super::near::Near;
 use super::places::{Placed, Squares};
