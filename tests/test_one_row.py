@@ -147,3 +147,42 @@ def test_a_row_of_racks_back_to_back_ends_where_both_do(rack: float, flue: float
     picture = hall(31.2, 5.2 + 2 * rack + flue, racks)
     assert labels(picture, "junction", "type") == ["L"] * 4 + ["T"] * 2
     assert labels(picture, "corridor", "width") == pytest.approx([2.4] * 3 + [2.6] * 2, abs=0.25)
+
+
+def test_a_way_past_a_row_may_be_wider_than_its_aisles_are_together() -> None:
+    picture = hall(32, 5.2, [(6.6, 2.0, 25.4, 3.2)])
+    assert labels(picture, "junction", "type") == ["L"] * 4
+    assert labels(picture, "corridor", "width") == pytest.approx([2.0] * 2 + [6.6] * 2, abs=0.25)
+
+
+def test_a_row_of_racks_back_to_back_ends_where_one_of_them_has_an_empty_bay() -> None:
+    racks: Boxes = [(5.0, 2.5, 15, 3.5), (3.0, 3.5, 15, 4.5), (18, 2.5, 30, 3.5), (18, 3.5, 28, 4.5)]
+    picture = hall(33, 7, racks)
+    assert labels(picture, "junction", "type") == ["L"] * 4 + ["T"] * 2
+    assert labels(picture, "corridor", "width") == pytest.approx([2.5] * 2 + [3.0] * 3, abs=0.25)
+
+
+def test_a_way_through_a_row_whose_end_bays_are_half_empty_is_as_wide_as_those_past_its_ends() -> None:
+    racks: Boxes = [(3, 2.5, 13, 3.5), (3, 3.5, 15, 4.5), (18, 2.5, 30, 3.5), (20, 3.5, 30, 4.5)]
+    picture = hall(33, 7, racks)
+    assert labels(picture, "junction", "type") == ["L"] * 4 + ["T"] * 2
+    # Two bays that are both empty are no way: they are narrower.
+    racks = [(3, 2.5, 15, 4.5), (17, 2.5, 30, 3.5), (19, 3.5, 30, 4.5)]
+    assert labels(hall(33, 7, racks), "junction", "type") == ["L"] * 4
+
+
+def test_goods_on_the_floor_at_a_rows_faces_end_no_row() -> None:
+    goods: Boxes = [(x, y, x + 0.3, y + 0.3) for x, y in ((1.2, 2.4), (1.5, 3.2), (12.6, 3.2), (12.9, 2.4))]
+    picture = hall(24, 6, [(4, 2.5, 10, 3.4), (14, 2.5, 20, 3.4), *goods])
+    assert labels(picture, "junction", "type") == ["L"] * 4 + ["T"] * 2
+    assert labels(picture, "corridor", "width") == pytest.approx([2.5] * 2 + [4.0] * 3, abs=0.25)
+
+
+def test_posts_end_a_row_where_no_bay_fits_between_them_and_the_wall() -> None:
+    bay, first, full = 2.0, 3.4, (2, 3, 5, 6, 8, 9)  # of twelve bays
+    places = [first + n * bay for n in range(13)]
+    posts: Boxes = [(x - 0.05, y, x + 0.05, y + 0.1) for x in places for y in (2.5, 4.4)]
+    goods: Boxes = [(places[n] + 0.1, 2.55, places[n + 1] - 0.1, 4.45) for n in full]
+    picture = hall(2 * first + 12 * bay, 7, goods + posts)
+    assert labels(picture, "junction", "type") == ["L"] * 4
+    assert labels(picture, "corridor", "width") == pytest.approx([2.5] * 2 + [first] * 2, abs=0.25)

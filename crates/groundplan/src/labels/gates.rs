@@ -6,7 +6,7 @@ use super::corridors::{self, Strip, UNTOLD};
 use super::look::Look;
 use super::racks::Row;
 use super::sections::{Columns, WIDTH};
-use super::through::{Seen, Through};
+use super::through::{BETWEEN_CELLS, Seen, Through};
 use super::turned::Turned;
 use super::widths::Widths;
 use crate::bands::flat_map_each;
@@ -27,24 +27,27 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
         let view = &views[row.direction];
         let middles = between.map(|n| strips[n].middle());
         let columns = Columns::new(look, &evidence.grid.frame, [view, other], reaching, view.pitch);
-        let beside = between.map(|n| strips[n].width()).into_iter().fold(0.0, f64::max);
-        Some(Seen { own: row.along, row: reaching, columns, views: [view, other], between, middles, beside })
+        Some(Seen { own: row.along, row: reaching, columns, views: [view, other], between, middles })
     });
-    for Seen { own, row, columns, views: [view, other], middles, .. } in &seen {
-        for way in columns.ways().into_iter().filter(|way| own[0] < way[0] && way[1] < own[1]) {
-            let found = if columns.is_as_bays(way) { &mut doubtful } else { &mut gates };
-            found.push(strip(view, other, row, way, *middles));
+    for row in &seen {
+        for way in row.columns.ways() {
+            let found = if row.columns.is_as_bays(way) { &mut doubtful } else { &mut gates };
+            found.extend(row.gate(way));
         }
     }
     let through = Through::new(seen, views.len());
-    for (gate, is_as_bays) in through.at_walls(strips, &placed) {
-        if is_as_bays { &mut doubtful } else { &mut gates }.push(gate);
+    for (gate, is_doubtful) in through.at_walls(strips, &placed) {
+        if is_doubtful { &mut doubtful } else { &mut gates }.push(gate);
     }
+    let between_racks = through.of_rows_alone();
     let mut sure = Widths::of(views, strips.iter().filter(|strip| !strip.bays).chain(&gates));
     let through = through.find(&mut sure);
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
     doubtful.retain(|gate| sure[gate.direction].is_empty() || sure[gate.direction].have(gate.width(), None));
     gates.extend(doubtful);
+    // Where no row beside tells a bay from a way, a way is as wide as others of the place.
+    let is_as_wide = |gate: &Strip, pitch| sure[gate.direction].have(gate.width() + BETWEEN_CELLS, pitch);
+    gates.extend(between_racks.into_iter().filter(|(gate, pitch)| is_as_wide(gate, *pitch)).map(|(gate, _)| gate));
     gates.retain(|gate| !through.iter().any(|way| is_in(gate, way)));
     gates.extend(through);
     in_line(gates)

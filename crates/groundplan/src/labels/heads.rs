@@ -11,7 +11,6 @@ use super::look::Look;
 use super::racks::Row;
 use super::ragged;
 use super::sections::Columns;
-use super::through;
 use super::turned::Turned;
 use crate::ends::{around, overlap, sorted};
 use crate::grid::Frame;
@@ -156,8 +155,7 @@ impl Heads<'_> {
     /// The way past some rows, if it is free.
     fn way(&self, rows: &[Between], wall: f64, width: f64) -> Option<Head> {
         let aisles = rows.iter().flat_map(|row| row.aisles).map(|n| self.strips[n].width()).fold(0.0, f64::max);
-        let widest = self.parameters.labels_max_width.min(through::widest_at_wall(aisles));
-        if !(family::LED_TO * aisles..=widest).contains(&width) {
+        if !(family::LED_TO * aisles..=self.parameters.labels_max_width).contains(&width) {
             return None;
         }
         let (first, last) = (&self.strips[rows.first()?.aisles[0]], &self.strips[rows.last()?.aisles[1]]);

@@ -5,6 +5,7 @@ mod barriers;
 mod bays;
 mod beside;
 mod blocks;
+mod closing;
 mod columns;
 mod confidence;
 mod connected;

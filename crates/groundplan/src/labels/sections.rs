@@ -3,9 +3,10 @@
 //! A bay is as wide as the posts recur, and a row of empty ones is free from one end to the other. A way has another
 //! width, or the row is closed on both its sides.
 
-use super::look::{BLOCKED, Look};
+use super::closing::{Closing, Uprights};
+use super::look::Look;
 use super::racks::Row;
-use super::runs::{close, runs};
+use super::runs::runs;
 use super::shares::Shares;
 use super::turned::Turned;
 use crate::grid::Frame;
@@ -30,33 +31,20 @@ const CLUTTER: f64 = 0.2;
 const FREE: f64 = 0.12;
 /// Structure this near to a face stands on it, metres.
 const FACE: f64 = 0.25;
-/// An end is closed by what stands along a straight line so near to it, metres, over so much of the row's depth: goods
-/// beside one another do not line up so well.
-const FRAME: (f64, f64) = (0.35, 0.9);
-/// What stands so near to a line lies on it, metres; what stands so near to the row's faces is not asked.
-const ON_LINE: f64 = 0.06;
-const ON_FACE: f64 = 0.1;
-/// Racks that stand back to back are so far apart at most, metres.
-const FLUE: f64 = 0.3;
-/// Places along such a line are so far apart, metres.
-const STEP: f64 = 0.05;
 
 /// A row's columns, leaning as the direction does that its uprights stand along.
 pub struct Columns<'a> {
-    look: &'a Look<'a>,
-    frame: &'a Frame,
     view: &'a Turned,
     row: &'a Row,
-    /// Across, half way between the row's faces.
-    middle: f64,
-    /// Metres along for a metre across.
-    lean: f64,
+    uprights: Uprights<'a>,
     /// From post to post, metres, where that is known.
     pitch: Option<f64>,
     /// For each column, share of it that is not free.
     blocked: Vec<f64>,
     /// For each column, on which of the two faces something stands.
     faces: Vec<[bool; 2]>,
+    /// For each column, whether it is of an upright or of goods.
+    stops: Vec<bool>,
 }
 
 /// Places of a row that do not overlap, as many as there is room for, and how many of them are free.
@@ -79,7 +67,8 @@ impl<'a> Columns<'a> {
         let lean = libm::cos(turn) / libm::sin(turn);
         let middle = f64::midpoint(row.across[0], row.across[1]);
         let count = ((row.along[1] - row.along[0]) / view.cell) as usize;
-        let mut made = Self { look, frame, view, row, middle, lean, pitch, blocked: Vec::new(), faces: Vec::new() };
+        let uprights = Uprights { look, frame, view, across: row.across, middle, lean };
+        let mut made = Self { view, row, uprights, pitch, blocked: Vec::new(), faces: Vec::new(), stops: Vec::new() };
         let slices = (((row.across[1] - row.across[0]) / view.cell).round() as usize).max(1);
         let height = (row.across[1] - row.across[0]) / slices as f64;
         let slices: Vec<_> = (0..slices)
@@ -97,40 +86,61 @@ impl<'a> Columns<'a> {
             made.blocked.push(if slices.is_empty() { 1.0 } else { taken });
             made.faces.push([0, 1].map(|face| share(&faces[face]) > 0.0));
         }
+        made.stops = (0..count).map(|n| made.stands(n)).collect();
+        if pitch.is_none() {
+            made.pass_by();
+        }
         made
     }
 
     /// The ways through the row, from where to where along its middle, in order.
     pub fn ways(&self) -> Vec<[f64; 2]> {
-        let open: Vec<bool> = (0..self.blocked.len()).map(|n| !self.stops(n)).collect();
-        let sections = runs(&open, true).into_iter();
-        // A row's own ends are no uprights that a way could lie between.
-        let between = sections.filter(|&(from, to)| from > 0 && to < open.len());
-        between
-            .filter(|&(from, to)| self.is_way(from, to))
-            .map(|(from, to)| [self.place(from), self.place(to)])
-            .collect()
+        self.gaps(|from, to| self.is_way(from, to))
     }
 
-    /// The way between one of its ends, at which there is a wall, and what of the row stands nearest to that, if this is
-    /// closed there; it is no wider than so many metres. At both its ends half a column may be free.
-    pub fn way_at_end(&self, side: usize, widest: f64) -> Option<[f64; 2]> {
+    /// What is free between two ends of racks, be they of one of two that stand back to back: in a row whose bays are
+    /// half empty it may be a way or a bay.
+    pub fn between_racks(&self) -> Vec<[f64; 2]> {
+        let is_rack = |n: usize| self.closing(n) != Closing::Open;
+        self.gaps(|from, to| {
+            // A room has walls where a row has its faces.
+            let stands = |face: usize| self.faces[from..to].iter().filter(|faces| faces[face]).count();
+            let is_room = [0, 1].iter().any(|&face| stands(face) as f64 > TAKEN * (to - from) as f64);
+            !is_room && self.is_free_way(from, to, self.view.cell) && is_rack(from) && is_rack(to)
+        })
+    }
+
+    /// What lies between two uprights, in order: its own ends are none that a way could lie between.
+    fn gaps(&self, is_meant: impl Fn(usize, usize) -> bool) -> Vec<[f64; 2]> {
+        let between = runs(&self.stops, false).into_iter().filter(|&(from, to)| from > 0 && to < self.stops.len());
+        between.filter(|&(from, to)| is_meant(from, to)).map(|(from, to)| [self.place(from), self.place(to)]).collect()
+    }
+
+    /// The way between one of its ends, at which there is a wall, and what of the row stands nearest to that, if a rack
+    /// ends there or posts show that it is no bay; and whether that is doubtful, as wide as bays or beside one of two racks
+    /// back to back. At both its ends half a column may be free.
+    pub fn way_at_end(&self, side: usize) -> Option<([f64; 2], bool)> {
         let count = self.blocked.len();
-        let open: Vec<bool> = (0..count).map(|n| !self.stops(n)).collect();
-        let sections = runs(&open, true);
+        let sections = runs(&self.stops, false);
         let &(from, to) = if side == 0 { sections.first()? } else { sections.last()? };
         let (off, upright) = if side == 0 { (from, to) } else { (count - to, from) };
         let ends = [self.place(from), self.place(to)];
         let is_way = off as f64 * self.view.cell <= SIDE
             && (1..count).contains(&upright)
-            && (WIDTH.0..=widest).contains(&(ends[1] - ends[0] + self.view.cell))
-            && self.share(from, to) <= CLUTTER;
-        (is_way && self.is_closed(self.place(upright))).then_some(ends)
+            && self.is_free_way(from, to, self.view.cell);
+        if !is_way || self.is_between_posts(from, to) {
+            return is_way.then_some((ends, false));
+        }
+        match self.closing(upright) {
+            Closing::Open => None,
+            Closing::Half => Some((ends, true)),
+            Closing::Whole => Some((ends, self.is_as_bays(ends))),
+        }
     }
 
     /// The stretches in which nothing closes the row, from where to where along its middle, in order.
     pub fn open(&self) -> Vec<[f64; 2]> {
-        let is_open = |n: usize| !self.stops(n) && self.blocked[n] <= LEFT;
+        let is_open = |n: usize| !self.stops[n] && self.blocked[n] <= LEFT;
         let open: Vec<bool> = (0..self.blocked.len()).map(is_open).collect();
         runs(&open, true).into_iter().map(|(from, to)| [self.place(from), self.place(to)]).collect()
     }
@@ -139,7 +149,7 @@ impl<'a> Columns<'a> {
     pub fn first_stop(&self, from_low: bool) -> Option<f64> {
         let count = self.blocked.len();
         let stop =
-            if from_low { (0..count).find(|&n| self.stops(n)) } else { (0..count).rev().find(|&n| self.stops(n)) };
+            if from_low { (0..count).find(|&n| self.stops[n]) } else { (0..count).rev().find(|&n| self.stops[n]) };
         stop.map(|n| if from_low { n } else { count - 1 - n } as f64 * self.view.cell)
     }
 
@@ -152,13 +162,13 @@ impl<'a> Columns<'a> {
     /// it.
     pub fn may_end_at(&self, sides: [f64; 2]) -> bool {
         let (first, last) = self.inner(sides);
-        self.pitch.is_none_or(|pitch| sides[1] - sides[0] > NARROW * pitch) && !(first..last).any(|n| self.stops(n))
+        self.pitch.is_none_or(|pitch| sides[1] - sides[0] > NARROW * pitch) && !(first..last).any(|n| self.stops[n])
     }
 
     /// True when nothing stands in the row between two sides that one could not walk round.
     pub fn is_free(&self, sides: [f64; 2]) -> bool {
         let (first, last) = self.inner(sides);
-        first < last && self.share(first, last) <= CLUTTER && !(first..last).any(|n| self.stops(n))
+        first < last && self.share(first, last) <= CLUTTER && !(first..last).any(|n| self.stops[n])
     }
 
     /// In how many places of the row, but for what lies between two sides, as much beside one another is free.
@@ -167,7 +177,7 @@ impl<'a> Columns<'a> {
         let (count, length) = (self.blocked.len(), last - first);
         let (mut stops, mut taken) = (vec![0u32], vec![0.0]);
         for n in 0..count {
-            stops.push(stops[n] + u32::from(self.stops(n)));
+            stops.push(stops[n] + u32::from(self.stops[n]));
             taken.push(taken[n] + self.blocked[n]);
         }
         let is_free = |n: &usize| {
@@ -177,11 +187,6 @@ impl<'a> Columns<'a> {
         let others = || (0..=count.saturating_sub(length)).filter(|n| n + length <= first || last <= *n);
         let places = |count: usize| count as f64 / length.max(1) as f64;
         Free { free: places(others().filter(is_free).count()), places: places(others().count()) }
-    }
-
-    /// True when something stands along a straight line across the row near a place.
-    fn is_closed(&self, along: f64) -> bool {
-        self.closed(along) >= FRAME.1
     }
 
     /// The columns between two sides, without what stands at these.
@@ -200,21 +205,43 @@ impl<'a> Columns<'a> {
         self.row.along[0] + column as f64 * self.view.cell
     }
 
-    /// True when a column is of an upright or of goods: something stands on both faces, or in most of it.
-    fn stops(&self, n: usize) -> bool {
+    /// True when a column may be of an upright or of goods: something stands on both faces, or in most of it.
+    fn stands(&self, n: usize) -> bool {
         let near = n.saturating_sub(1)..(n + 2).min(self.faces.len());
         let stands = |face: usize| self.faces[near.clone()].iter().any(|faces| faces[face]);
         self.blocked[n] >= TAKEN || (self.faces[n].contains(&true) && stands(0) && stands(1))
     }
 
-    fn is_way(&self, from: usize, to: usize) -> bool {
+    /// Passes by what stands in the row and closes no rack's depth anywhere, unless it is two posts across from each
+    /// other: goods on the floor.
+    fn pass_by(&mut self) {
+        for (from, to) in runs(&self.stops, true) {
+            let is_frame = self.faces[from..to].iter().all(|faces| *faces == [true; 2]);
+            let is_within = from > 0 && to < self.stops.len();
+            if is_within && !is_frame && (from..=to).all(|n| self.closing(n) == Closing::Open) {
+                self.stops[from..to].fill(false);
+            }
+        }
+    }
+
+    /// How the row is closed where a column begins.
+    fn closing(&self, n: usize) -> Closing {
+        self.uprights.closing(self.place(n))
+    }
+
+    /// True when what lies between two columns is free, and with what lies between cells as wide as a way.
+    fn is_free_way(&self, from: usize, to: usize, between_cells: f64) -> bool {
         let width = self.place(to) - self.place(from);
-        if !(WIDTH.0..=WIDTH.1).contains(&width) || self.share(from, to) > CLUTTER {
-            return false;
-        }
-        if [from, to].iter().all(|&n| self.is_closed(self.place(n))) {
-            return true;
-        }
+        (WIDTH.0..=WIDTH.1).contains(&(width + between_cells)) && self.share(from, to) <= CLUTTER
+    }
+
+    fn is_way(&self, from: usize, to: usize) -> bool {
+        let is_closed = || [from, to].into_iter().all(|n| self.closing(n) == Closing::Whole);
+        self.is_free_way(from, to, 0.0) && (is_closed() || self.is_between_posts(from, to))
+    }
+
+    /// True when nothing stands between two columns and it is no bay that lies there, nor some of them.
+    fn is_between_posts(&self, from: usize, to: usize) -> bool {
         let stands = |n: &usize| self.blocked[*n] > FREE || self.faces[*n].contains(&true);
         let free = (from + 1..to.saturating_sub(1)).filter(stands).count() == 0;
         free && self.pitch.is_some() && !self.is_as_bays([self.place(from), self.place(to)])
@@ -226,39 +253,5 @@ impl<'a> Columns<'a> {
             let (width, count) = (to - from, ((to - from) / pitch).round());
             width <= BAY * pitch || (count >= 2.0 && (width / pitch - count).abs() < WHOLE)
         })
-    }
-
-    /// Over how much of the row's depth something stands along the straight line near a place where most does.
-    fn closed(&self, along: f64) -> f64 {
-        let step = self.frame.resolution;
-        let near = (ON_LINE / step).round().max(1.0) as usize;
-        let reach = (FRAME.0 / step).ceil() as usize + near;
-        let low = (self.row.across[0] + ON_FACE).min(self.middle);
-        let (count, down) = self.steps(low);
-        let lines: Vec<Vec<bool>> = (0..=2 * reach)
-            .map(|n| {
-                let u = along + (n as f64 - reach as f64) * step + (low - self.middle) * self.lean;
-                let mut samples = vec![0; count];
-                self.look.along(self.frame.to_pixels(self.view.to_map([u, low])), down, &mut samples);
-                samples.into_iter().map(|sample| sample > BLOCKED).collect()
-            })
-            .collect();
-        let stands = |lines: &[Vec<bool>]| {
-            let mut stands: Vec<bool> = (0..count).map(|k| lines.iter().any(|line| line[k])).collect();
-            // Where two racks stand back to back, each is a third of both at least.
-            close(&mut stands[count / 3..count - count / 3], (FLUE / STEP).round() as usize);
-            stands.into_iter().filter(|stands| *stands).count()
-        };
-        let most = lines.windows(2 * near + 1).map(stands).max();
-        most.unwrap_or(0) as f64 / count as f64
-    }
-
-    /// How many steps there are across the row from a place on, and one of them on the grid, pixels.
-    fn steps(&self, low: f64) -> (usize, [f64; 2]) {
-        let depth = 2.0 * (self.middle - low);
-        let count = (depth / STEP).round().max(1.0);
-        let at = |v: f64| self.frame.to_pixels(self.view.to_map([v * self.lean, v]));
-        let (from, to) = (at(low), at(low + depth));
-        (count as usize, [0, 1].map(|axis| (to[axis] - from[axis]) / count))
     }
 }

@@ -22,10 +22,9 @@ pub struct Seen<'a> {
     pub columns: Columns<'a>,
     /// Of the direction that it runs along, and of the one that crosses it.
     pub views: [&'a Turned; 2],
-    /// The two corridors beside it, the places across of their middles, and how wide the wider one is.
+    /// The two corridors beside it, and the places across of their middles.
     pub between: [usize; 2],
     pub middles: [f64; 2],
-    pub beside: f64,
 }
 
 /// What is open in some rows, one beside another.
@@ -45,14 +44,11 @@ impl Common {
 }
 
 /// A stretch that ends between cells is so much longer than what is open of it, metres.
-const BETWEEN_CELLS: f64 = 0.1;
+pub const BETWEEN_CELLS: f64 = 0.1;
 /// An opening so much shorter than another is as long, metres.
 const SLACK: f64 = 0.25;
 /// What is likelier than this is no way, whatever else is one.
 const LIKELY: f64 = 0.3;
-/// Between the ends of rows and a wall is a way up to so many metres and times as wide as those along the rows, and from
-/// there on open floor.
-const AT_WALL: (f64, f64) = (6.0, 3.5);
 /// A row goes on up to a wall that is so near to its end, metres.
 const NEAR: f64 = 0.3;
 /// What stands so near to a corridor's side, metres, or so far behind it as racks at walls are deep, over so much of a place
@@ -138,20 +134,20 @@ impl<'a> Through<'a> {
         }
     }
 
-    /// The ways between the last of a row and a wall that ends it and the corridors beside it, and whether each is as wide as
-    /// bays: where all rows beside one another end in line there, for else more rows tell by one another what is a way.
+    /// The ways between the last of a row and a wall that ends it and the corridors beside it, and whether each is doubtful:
+    /// where all rows beside one another end in line there, for else more rows tell by one another what is a way.
     pub fn at_walls(&self, strips: &[Strip], placed: &[Beside]) -> Vec<(Strip, bool)> {
         let at_wall = |seen: &Seen, side: usize| {
-            let ends = seen.columns.way_at_end(side, widest_at_wall(seen.beside))?;
+            let (ends, is_doubtful) = seen.columns.way_at_end(side)?;
             let [view, other] = seen.views;
             let way = || gates::strip(view, other, seen.row, ends, seen.middles);
-            seen.is_at_wall(strips, side).then(|| (way(), seen.is_bounded(strips, ends), seen.columns.is_as_bays(ends)))
+            seen.is_at_wall(strips, side).then(|| (way(), seen.is_bounded(strips, ends), is_doubtful))
         };
         let mut found = Vec::new();
         for side in [0, 1] {
             let ways: Vec<_> = self.rows.iter().map(|seen| at_wall(seen, side)).collect();
             for (n, at_wall) in ways.iter().enumerate() {
-                let Some((way, _, is_as_bays)) = at_wall else { continue };
+                let Some((way, _, is_doubtful)) = at_wall else { continue };
                 let beside = self.beside(n, way.middle());
                 let is_in_line = |m: &usize| {
                     let is_so = |end: usize, other: &Strip| (other.across[end] - way.across[end]).abs() <= SLACK;
@@ -162,11 +158,21 @@ impl<'a> Through<'a> {
                     && beside.iter().any(is_bounded)
                     && self.are_all(&beside, strips, placed)
                 {
-                    found.push((way.clone(), *is_as_bays));
+                    found.push((way.clone(), *is_doubtful));
                 }
             }
         }
         found
+    }
+
+    /// What lies between the racks of rows that no other row is beside, from aisle to aisle, and how far from post to post.
+    pub fn of_rows_alone(&self) -> Vec<(Strip, Option<f64>)> {
+        let alone = (0..self.rows.len()).filter(|&n| self.above[n].is_empty() && self.below[n].is_empty());
+        let gates = alone.map(|n| &self.rows[n]).flat_map(|seen| {
+            let gates = seen.columns.between_racks().into_iter().filter_map(|way| seen.gate(way));
+            gates.map(|gate| (gate, seen.views[0].pitch))
+        });
+        gates.collect()
     }
 
     /// A row and those beside it, one beside another, that reach up to a place across the direction that crosses them.
@@ -249,10 +255,6 @@ impl<'a> Through<'a> {
     }
 
     fn is_way(&self, common: &Common, widths: &[Widths]) -> bool {
-        let is_floor = |seen: &Seen| common.width() > widest_at_wall(seen.beside) && seen.is_left(common.ends);
-        if common.rows.iter().any(|&n| is_floor(&self.rows[n])) {
-            return false;
-        }
         let [view, other] = self.rows[common.rows[0]].views;
         let known = &widths[other.direction];
         let limit = match (self.is_whole(common), known.have(common.width() + BETWEEN_CELLS, view.pitch)) {
@@ -271,11 +273,6 @@ impl<'a> Through<'a> {
         let (first, last) = (common.rows[0], common.rows[common.rows.len() - 1]);
         !self.above[last].iter().chain(&self.below[first]).any(|&n| self.rows[n].holds(middle))
     }
-}
-
-/// How wide a way between the ends of rows and a wall may be, by how wide those along the rows are, metres.
-pub fn widest_at_wall(beside: f64) -> f64 {
-    AT_WALL.0.min(AT_WALL.1 * beside)
 }
 
 impl Seen<'_> {
@@ -300,11 +297,6 @@ impl Seen<'_> {
     fn is_as_bays(&self, ends: [f64; 2]) -> bool {
         let [one, two] = ends.map(|end| self.along(end));
         self.columns.is_as_bays(sorted([one, two]))
-    }
-
-    /// True when a stretch goes on beyond an end of the row.
-    fn is_left(&self, ends: [f64; 2]) -> bool {
-        ends.iter().any(|&end| !(self.own[0]..=self.own[1]).contains(&self.along(end)))
     }
 
     /// True when what lies there across the crossing direction crosses it.
@@ -344,6 +336,13 @@ impl Seen<'_> {
         [below, above].into_iter().any(leads)
             || is_held(low - OUTWARDS, low + BESIDE)
             || is_held(high - BESIDE, high + OUTWARDS)
+    }
+
+    /// A way through it, from where to where along, that lies between its own ends.
+    pub fn gate(&self, way: [f64; 2]) -> Option<Strip> {
+        let [view, other] = self.views;
+        let is_within = self.own[0] < way[0] && way[1] < self.own[1];
+        is_within.then(|| gates::strip(view, other, self.row, way, self.middles))
     }
 
     /// A way through it.

@@ -1,0 +1,82 @@
+//! What closes a row of racks at a place: something that stands in one straight line across it, as a rack's end does.
+
+use super::look::{BLOCKED, Look};
+use super::runs::close;
+use super::turned::Turned;
+use crate::grid::Frame;
+
+/// An end is closed by what stands along a straight line so near to it, metres, over so much of the row's depth: goods
+/// beside one another do not line up so well.
+const FRAME: (f64, f64) = (0.35, 0.9);
+/// What stands so near to a line lies on it, metres; what stands so near to the row's faces is not asked.
+const ON_LINE: f64 = 0.06;
+const ON_FACE: f64 = 0.1;
+/// Racks that stand back to back are so far apart at most, metres.
+const FLUE: f64 = 0.3;
+/// Places along such a line are so far apart, metres.
+const STEP: f64 = 0.05;
+
+/// How a row is closed at a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Closing {
+    Open,
+    /// From one face to its middle, as one of two racks that stand back to back does.
+    Half,
+    Whole,
+}
+
+/// Where a row's uprights may stand: along lines that lean as the direction does that they stand along.
+pub struct Uprights<'a> {
+    pub look: &'a Look<'a>,
+    pub frame: &'a Frame,
+    pub view: &'a Turned,
+    /// The row's faces, and half way between them.
+    pub across: [f64; 2],
+    pub middle: f64,
+    /// Metres along for a metre across.
+    pub lean: f64,
+}
+
+impl Uprights<'_> {
+    /// How far the row is closed along the straight line near a place on which most stands.
+    pub fn closing(&self, along: f64) -> Closing {
+        let step = self.frame.resolution;
+        let near = (ON_LINE / step).round().max(1.0) as usize;
+        let reach = (FRAME.0 / step).ceil() as usize + near;
+        let low = (self.across[0] + ON_FACE).min(self.middle);
+        let (count, down) = self.steps(low);
+        let lines: Vec<Vec<bool>> = (0..=2 * reach)
+            .map(|n| {
+                let u = along + (n as f64 - reach as f64) * step + (low - self.middle) * self.lean;
+                let mut samples = vec![0; count];
+                self.look.along(self.frame.to_pixels(self.view.to_map([u, low])), down, &mut samples);
+                samples.into_iter().map(|sample| sample > BLOCKED).collect()
+            })
+            .collect();
+        let is_closed =
+            |stands: &[bool]| stands.iter().filter(|stands| **stands).count() as f64 >= FRAME.1 * stands.len() as f64;
+        let mut closing = Closing::Open;
+        for lines in lines.windows(2 * near + 1) {
+            let mut stands: Vec<bool> = (0..count).map(|k| lines.iter().any(|line| line[k])).collect();
+            // Where two racks stand back to back, each is a third of both at least.
+            close(&mut stands[count / 3..count - count / 3], (FLUE / STEP).round() as usize);
+            if is_closed(&stands) {
+                return Closing::Whole;
+            }
+            let half = (count / 2).max(1);
+            if is_closed(&stands[..half]) || is_closed(&stands[count - half..]) {
+                closing = Closing::Half;
+            }
+        }
+        closing
+    }
+
+    /// How many steps there are across the row from a place on, and one of them on the grid, pixels.
+    fn steps(&self, low: f64) -> (usize, [f64; 2]) {
+        let depth = 2.0 * (self.middle - low);
+        let count = (depth / STEP).round().max(1.0);
+        let at = |v: f64| self.frame.to_pixels(self.view.to_map([v * self.lean, v]));
+        let (from, to) = (at(low), at(low + depth));
+        (count as usize, [0, 1].map(|axis| (to[axis] - from[axis]) / count))
+    }
+}
