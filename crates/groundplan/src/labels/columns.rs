@@ -1,5 +1,6 @@
 //! What the columns of a strip hold: of its sides, and between them.
 
+use super::recall::Key;
 use super::turned::Turned;
 use crate::bits::Bits;
 use std::ops::Range;
@@ -27,6 +28,8 @@ pub const NARROWED: f64 = 0.5;
 pub struct Side {
     /// Structure, or the gap of an empty bay.
     pub walls: Bits,
+    /// Of these.
+    pub key: Key,
     /// Structure, or a gap too short for a bay.
     pub near: Bits,
     /// Structure of some length: more than posts.
@@ -57,7 +60,8 @@ impl Side {
             walls = joined(&walls, JAMB, SHORTEST_SIDE);
         }
         let faces = joined(&view.covered[line], FACE_GAP, FACE);
-        Self { walls, near: joined(posts, BAY / 2.0, 0.0), faces, mouths: open }
+        let key = Key::default().bits(&walls, 0..view.size[0]);
+        Self { walls, key, near: joined(posts, BAY / 2.0, 0.0), faces, mouths: open }
     }
 }
 

@@ -125,7 +125,7 @@ impl<'a> Family<'a> {
         self.sweep().find(TOGETHER, threads, |near, low, found| {
             for (sides, across) in self.facing(low) {
                 let pieces = recall.strips.or_find(
-                    || self.key(across),
+                    || sides.iter().fold(self.key(across), |key, &side| key.key(self.sides[side].key)),
                     || {
                         let own = self.seen_in(near.view());
                         let pieces = |open: Range<usize>| {
@@ -140,10 +140,11 @@ impl<'a> Family<'a> {
         })
     }
 
-    /// The key of all that strips between two lines are found from.
-    fn key(&self, across: [f64; 2]) -> Key {
-        let key = self.view.key(across, BESIDE.1).with(u64::from(self.racked));
-        self.pitches.iter().copied().fold(key, Key::number)
+    /// The key of all that strips between two lines are found from but for the gaps in these: of how far it is from post
+    /// to post no more counts than what it does to them, so that where bays turn out to be others little is sought again.
+    fn key(&self, [low, high]: [f64; 2]) -> Key {
+        let key = self.view.key([low, high], BESIDE.1);
+        key.with(u64::from(self.racked)).with(u64::from(self.is_wide_as_bays(high - low)))
     }
 
     /// The corridors into which others open side by side.

@@ -153,9 +153,14 @@ impl Family<'_> {
         [if from > cells(BAY) { from } else { 0 }, if count - to > cells(BAY) { to } else { count }]
     }
 
+    /// What is so wide may be a row of bays.
+    pub fn is_wide_as_bays(&self, width: f64) -> bool {
+        self.pitches.iter().any(|pitch| (BAY_WIDTH.0 * pitch..=BAY_WIDTH.1 * pitch).contains(&width))
+    }
+
     /// As wide as a bay, and walled no better than a row of empty ones.
     fn is_like_bays(&self, columns: &[Column], width: f64) -> bool {
-        if !self.pitches.iter().any(|pitch| (BAY_WIDTH.0 * pitch..=BAY_WIDTH.1 * pitch).contains(&width)) {
+        if !self.is_wide_as_bays(width) {
             return false;
         }
         let all = columns.len() as f64;

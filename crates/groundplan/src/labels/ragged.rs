@@ -5,7 +5,8 @@
 use super::beside::Beside;
 use super::corridors::{self, Strip};
 use super::onward;
-use super::stretches::{Candidate, Found, Held, beyond, depth, fewest_seen, ragged};
+use super::recall::Key;
+use super::stretches::{Candidate, Found, Held, beyond, depth, fewest_seen, may_be_bay, ragged};
 use super::sums::What;
 use super::sweep::Sweep;
 use super::turned::Turned;
@@ -72,7 +73,8 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     let sweep = Sweep { view, places: &lows, around, what: &[What::Blocked, What::Occupied] };
     let mut candidates = sweep.find(TOGETHER, threads, |near, n, found| {
         let (across, deep) = tried[n];
-        let key = || view.key(across, depth(across)).number(bay).with(u64::from(deep.is_some()));
+        let told = [may_be_bay(across, bay), deep.is_some()].map(u64::from);
+        let key = || told.into_iter().fold(view.key(across, depth(across)), Key::with);
         let ways = evidence.recall.ragged.or_find(key, || Candidate::new(near.view(), across, bay).ways(deep));
         found.extend(ways.iter().map(|way| Short::new(view, n, way)));
     });

@@ -107,7 +107,7 @@ impl<'a> Candidate<'a> {
     pub fn new(view: &'a Turned, across: [f64; 2], bay: f64) -> Self {
         let blocked = view.blocked_in(across[0], across[1]);
         let closed = blocked.least(|share| share > IMPASSABLE);
-        Self { view, across, bay: across[1] - across[0] <= bay, closed, blocked }
+        Self { view, across, bay: may_be_bay(across, bay), closed, blocked }
     }
 
     /// What the columns of a stretch are, where so many of them may be a way.
@@ -288,6 +288,11 @@ pub fn ragged(view: &Turned, along: [f64; 2], across: [f64; 2], score: f64) -> S
 /// In fewer columns nothing seen stands at a side of any way.
 pub fn fewest_seen(view: &Turned) -> f64 {
     LEAST_SEEN * LONG.0 / view.cell
+}
+
+/// What is no wider than `bay`, metres, may be a row of empty bays.
+pub fn may_be_bay(across: [f64; 2], bay: f64) -> bool {
+    across[1] - across[0] <= bay
 }
 
 /// How far beyond a strip's borders its sides may stand, metres.

@@ -277,14 +277,16 @@ impl Turned {
 
     /// Keys of the view and of its lines.
     fn find_keys(&self) -> (Key, Arc<Vec<Key>>) {
-        let pitch = self.pitch.map_or(Key::default(), |pitch| Key::default().number(pitch));
         let numbers = [self.angle, self.cell, self.start[0], self.start[1]];
         let lines = self.offsets.iter().zip(self.covered.iter()).zip(self.touched.iter());
         let key = |((offset, covered), touched): ((&f64, &Bits), &Bits)| {
             let columns = 0..self.size[0];
             Key::default().number(*offset).bits(covered, columns.clone()).bits(touched, columns)
         };
-        (numbers.into_iter().fold(pitch.with(self.direction as u64), Key::number), Arc::new(lines.map(key).collect()))
+        (
+            numbers.into_iter().fold(Key::default().with(self.direction as u64), Key::number),
+            Arc::new(lines.map(key).collect()),
+        )
     }
 
     /// The key of all that can be seen of a strip, and so far beyond its sides, metres.
