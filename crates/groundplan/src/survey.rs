@@ -2,13 +2,13 @@
 
 use crate::adjacency::{Adjacency, find_adjacency};
 use crate::arrangement::arrange;
-use crate::bands::side_by_side;
+use crate::bands::{side_by_side, worth};
 use crate::directions::{Directions, find_directions};
 use crate::gradients::{Gradients, find_gradients};
 use crate::grid::Grid;
 use crate::labels::{
     Division, Evidence, Ground, Label, Memory, Pattern, Recall, Sight, Sketch, find_confidence, find_labels,
-    find_labels_in, find_patterns,
+    find_labels_in, find_patterns, find_uprights,
 };
 use crate::lines::{Lines, find_lines};
 use crate::occupancy::{Occupancy, find_occupancy};
@@ -87,11 +87,15 @@ pub fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, threads: u
     let recall = Recall::new(given.keep.then(|| given.memory.take().unwrap_or_default()));
     let mut survey = side_by_side(threads, |side| {
         let ground = strips.then(|| Ground::start(side, grid, threads, &recall));
-        let structure = Structure::new(grid, parameters, &mut given, threads);
+        // And what is looked for in the edge pixels alone, beside what lines up.
+        let upright = |gradients: &Gradients| strips.then(|| find_uprights(frame, &gradients.pixels));
+        let (structure, uprights) = Structure::beside(grid, parameters, &mut given, threads, upright);
         let evidence = structure.evidence(grid, parameters, threads, &recall);
         let (divided, labels, confidence) = side_by_side(threads, |side| {
             let divided = side.start(|| Divided::new(&evidence, given.sums));
-            let sketch = ground.map(|ground| Sketch::beside(&evidence, Sight::new(side, &evidence, ground)));
+            let sketch = ground.map(|ground| {
+                Sketch::beside(&evidence, Sight::new(side, &evidence, ground, &uprights.unwrap_or_default()))
+            });
             let divided = divided.get();
             let Divided { subdivision, occupancy, adjacency, .. } = &divided;
             let division = Division { subdivision, occupancy, adjacency };
@@ -148,13 +152,29 @@ pub(crate) struct Structure {
 
 impl Structure {
     pub fn new(grid: &Grid, parameters: &Parameters, given: &mut Given, threads: usize) -> Self {
+        Self::beside(grid, parameters, given, threads, |_| ()).0
+    }
+
+    /// The same, and beside it what is made of the gradients.
+    fn beside<T: Send>(
+        grid: &Grid,
+        parameters: &Parameters,
+        given: &mut Given,
+        threads: usize,
+        make: impl FnOnce(&Gradients) -> T + Send,
+    ) -> (Self, T) {
         let frame = &grid.frame;
         let gradients = given.gradients.take().unwrap_or_else(|| find_gradients(grid, parameters, threads));
-        let found = || find_directions(frame, &gradients, parameters, threads);
-        let directions = given.directions.take().unwrap_or_else(found);
-        let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
-        let lines = given.lines.take().unwrap_or_else(|| find_lines(&radiograms, parameters, threads));
-        Self { gradients, directions, radiograms, lines }
+        let ((directions, radiograms, lines), made) =
+            side_by_side(worth(frame.width * frame.height, threads), |side| {
+                let made = side.start(|| make(&gradients));
+                let found = || find_directions(frame, &gradients, parameters, threads);
+                let directions = given.directions.take().unwrap_or_else(found);
+                let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
+                let lines = given.lines.take().unwrap_or_else(|| find_lines(&radiograms, parameters, threads));
+                ((directions, radiograms, lines), made.get())
+            });
+        (Self { gradients, directions, radiograms, lines }, made)
     }
 
     /// What labels are found from.

@@ -8,7 +8,8 @@ use super::frames::{AISLE, BACK, Frame, Legs, NEAR, frames};
 use super::grounds::on_map;
 use super::near::Near;
 use super::racks::Row;
-use super::uprights;
+use super::uprights::Upright;
+use crate::bands::{map_each, worth};
 use crate::ends::{both, overlap};
 use crate::grid::State;
 use std::collections::BTreeMap;
@@ -42,13 +43,14 @@ struct Rack {
     frames: usize,
 }
 
-/// The racks, along each direction.
-pub fn find(evidence: &Evidence) -> Vec<Row> {
-    let uprights = uprights::find(evidence);
-    let mut racks: Vec<Rack> = Vec::new();
-    for (direction, &angle) in evidence.directions.angles.iter().enumerate() {
+/// The racks that some uprights are legs of, along each direction.
+pub fn find(evidence: &Evidence, uprights: &[Upright]) -> Vec<Row> {
+    let Evidence { grid, directions, threads, .. } = *evidence;
+    let threads = worth(grid.frame.width * grid.frame.height, threads);
+    let along = |direction: usize| {
+        let angle = directions.angles[direction];
         let heading = [libm::cos(angle), libm::sin(angle)];
-        let (frames, legs) = frames(&uprights, heading);
+        let (frames, legs) = frames(uprights, heading);
         let map = Map { evidence, heading };
         let mut found: Vec<Rack> = in_rows(&frames, &legs).iter().map(|row| rack(direction, row, &legs)).collect();
         found.retain(|rack| blocks::is_oblong(&rack.row) && map.shows_floor(&rack.row));
@@ -56,8 +58,9 @@ pub fn find(evidence: &Evidence) -> Vec<Row> {
         let mut found: Vec<Rack> = found.iter().filter(|rack| is_kind(rack, &found)).cloned().collect();
         let leaning: Vec<Rack> = frames.iter().filter_map(|frame| leaning(&map, &found, &frames, frame)).collect();
         found.extend(leaning);
-        racks.extend(back_to_back(found));
-    }
+        back_to_back(found)
+    };
+    let mut racks = map_each(directions.angles.len(), threads, along).concat();
     // Legs of more than one direction's racks are of that which has most of them in a row.
     racks.sort_by_key(|rack| std::cmp::Reverse(rack.frames));
     let rows: Vec<Row> = racks.into_iter().map(|rack| rack.row).collect();

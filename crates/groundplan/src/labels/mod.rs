@@ -76,6 +76,7 @@ use look::Look;
 use rooms::Space;
 pub(crate) use sketch::{Sight, Sketch};
 pub(crate) use strips::find as find_labels_in;
+pub(crate) use uprights::find as find_uprights;
 
 /// Kinds of junctions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -271,7 +272,8 @@ pub fn find_labels(evidence: &Evidence, division: &Division) -> Vec<Label> {
         Method::Paper => paper::find(evidence, division),
         Method::Strips => side_by_side(evidence.threads, |side| {
             let ground = Ground::start(side, evidence.grid, evidence.threads, evidence.recall);
-            find_labels_in(evidence, division, Sketch::beside(evidence, Sight::new(side, evidence, ground)))
+            let uprights = find_uprights(&evidence.grid.frame, &evidence.gradients.pixels);
+            find_labels_in(evidence, division, Sketch::beside(evidence, Sight::new(side, evidence, ground, &uprights)))
         }),
     }
 }

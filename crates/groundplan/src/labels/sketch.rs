@@ -19,6 +19,7 @@ use super::racks::{self, Row};
 use super::ragged::{self, Ways};
 use super::rooms::{Bar, Space};
 use super::turned::Turned;
+use super::uprights::{self, Upright};
 use super::whole;
 use super::widths;
 use super::{Evidence, Ground};
@@ -45,11 +46,16 @@ type Free = Option<(Space, Vec<Bar>)>;
 
 impl<'s, 'a> Sight<'a, Later<'s, Free>> {
     /// From the lines, and what was begun before there were any.
-    pub fn new(side: Side<'s, '_>, evidence: &'s Evidence, Ground { look, space }: Ground<'s, 'a>) -> Self {
+    pub fn new(
+        side: Side<'s, '_>,
+        evidence: &'s Evidence,
+        Ground { look, space }: Ground<'s, 'a>,
+        uprights: &[Upright],
+    ) -> Self {
         let free = side.start(move || space.get().map(|space| with_bars(evidence, space)));
         let look = look.get();
         let count = evidence.directions.angles.len();
-        let on_legs = legs::find(evidence);
+        let on_legs = legs::find(evidence, uprights);
         let views = map_each(count, evidence.threads, |d| Turned::new(&shared_out(evidence), &look, d, &on_legs));
         Self { look, views, on_legs, free }
     }
@@ -60,7 +66,7 @@ impl<'a> Sight<'a, Free> {
     pub fn lined(evidence: &Evidence, Ground { look, space }: Ground<'_, 'a>) -> Self {
         let free = space.get().map(|space| with_bars(evidence, space));
         let count = evidence.directions.angles.len();
-        let on_legs = legs::find(evidence);
+        let on_legs = legs::find(evidence, &uprights::find(&evidence.grid.frame, &evidence.gradients.pixels));
         let views = map_each(count, evidence.threads, |d| Turned::lined(evidence, d, &on_legs));
         Self { look: look.get(), views, on_legs, free }
     }

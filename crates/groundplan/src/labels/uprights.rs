@@ -1,7 +1,7 @@
 //! Uprights: small things that stand by themselves, such as the legs of a rack and the plates that join two of them.
 
-use super::Evidence;
 use crate::grid::Frame;
+use crate::pixels::Pixels;
 use crate::sets::Sets;
 
 /// What is longer than this is no upright, metres.
@@ -30,9 +30,8 @@ impl Upright {
     }
 }
 
-/// The uprights of a map, from its lowest row up.
-pub fn find(evidence: &Evidence) -> Vec<Upright> {
-    let frame = &evidence.grid.frame;
+/// The uprights of a map, from its lowest row up, by its edge pixels.
+pub fn find(frame: &Frame, edges: &Pixels) -> Vec<Upright> {
     let mut things = Things {
         sets: Sets::new(0),
         sums: Vec::new(),
@@ -42,7 +41,7 @@ pub fn find(evidence: &Evidence) -> Vec<Upright> {
         small: Vec::new(),
         many: MANY,
     };
-    evidence.gradients.pixels.iter().for_each(|pixel| things.add(pixel));
+    edges.iter().for_each(|pixel| things.add(pixel));
     things.end_row(0);
     things.rows = Default::default();
     things.let_go();
