@@ -6,7 +6,7 @@ use std::ops::{BitAnd, BitOrAssign, Range};
 pub const WORD: usize = 64;
 
 /// A set of pixels.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Bits(Vec<u64>);
 
 impl Bits {

@@ -74,6 +74,11 @@ pub fn reach(resolution: f64, parameters: &Parameters) -> usize {
     radius(resolution, parameters) + 1
 }
 
+/// No pixel bears on gradients farther from it than this, metres.
+pub(crate) fn reach_across(resolution: f64, parameters: &Parameters) -> f64 {
+    std::f64::consts::SQRT_2 * reach(resolution, parameters) as f64 * resolution
+}
+
 /// Finds the edge pixels and their gradients.
 #[must_use]
 pub fn find_gradients(grid: &Grid, parameters: &Parameters, threads: usize) -> Gradients {

@@ -68,7 +68,7 @@ pub struct Given {
     pub lines: Option<Lines>,
     /// What the pixels add to the faces that these lines make.
     pub sums: Option<FaceSums>,
-    /// What a survey of the same parameters kept.
+    /// What a survey of the same parameters kept; gradients that are given with it are those of the pixels.
     pub memory: Option<Memory>,
     /// The gradients, and what is found on the way to the labels, will be wanted again: where the map is large they are
     /// let go if not.

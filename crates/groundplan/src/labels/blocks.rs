@@ -4,6 +4,7 @@
 use super::beside::{Beside, placed};
 use super::near::Near;
 use super::racks::{DEPTH, Row, apart};
+use super::recall::{Key, Recall};
 use super::runs::{close, runs};
 use super::turned::Turned;
 use crate::bands::flat_map_each;
@@ -66,6 +67,7 @@ struct Block {
 /// What may be a block, whatever ways there are beside it: found once, though racks are looked for again and again.
 pub struct Standing<'a> {
     views: &'a [Turned],
+    recall: &'a Recall,
     threads: usize,
     /// With floor on both sides, and with floor on one at least.
     free: OnceCell<Vec<Row>>,
@@ -73,14 +75,14 @@ pub struct Standing<'a> {
 }
 
 impl<'a> Standing<'a> {
-    pub fn new(views: &'a [Turned], threads: usize) -> Self {
-        Self { views, threads, free: OnceCell::new(), leaning: OnceCell::new() }
+    pub fn new(views: &'a [Turned], recall: &'a Recall, threads: usize) -> Self {
+        Self { views, recall, threads, free: OnceCell::new(), leaning: OnceCell::new() }
     }
 
     fn before(&self, fronts: &[Fronts]) -> Vec<Row> {
         let views = || self.views.iter();
-        let found =
-            fronts.iter().flat_map(|&fronts| views().flat_map(move |view| candidates(view, fronts, self.threads)));
+        let of = |view, fronts| candidates(view, fronts, self.recall, self.threads);
+        let found = fronts.iter().flat_map(|&fronts| views().flat_map(move |view| of(view, fronts)));
         apart(self.views, found.collect())
     }
 
@@ -216,7 +218,7 @@ fn overlap(views: &[Turned], one: &Row, two: &Row) -> bool {
 }
 
 /// Pairs of lines between which something stands, with floor before it.
-fn candidates(view: &Turned, fronts: Fronts, threads: usize) -> Vec<Row> {
+fn candidates(view: &Turned, fronts: Fronts, recall: &Recall, threads: usize) -> Vec<Row> {
     let columns = |metres: f64| (metres / view.cell).round() as usize;
     let least = columns(OBLONG.0);
     let long = |touched: &Bits| {
@@ -234,14 +236,22 @@ fn candidates(view: &Turned, fronts: Fronts, threads: usize) -> Vec<Row> {
             if high - low < THINNEST {
                 continue;
             }
-            for run in &runs[n] {
+            let shared = runs[n].iter().flat_map(|run| {
                 let first = runs[m].partition_point(|other| other.end < run.start + least);
                 let ahead = runs[m][first..].iter().take_while(|other| other.start + least <= run.end);
                 let shared = ahead.map(|other| run.start.max(other.start)..run.end.min(other.end));
-                for shared in shared.filter(|shared| shared.start + least <= shared.end) {
-                    found.extend(standing(view, [n, m], fronts, shared));
-                }
+                shared.filter(|shared| shared.start + least <= shared.end)
+            });
+            let mut shared = shared.peekable();
+            if shared.peek().is_none() {
+                continue;
             }
+            let key = || fronts.into_iter().map(u64::from).fold(view.key([low, high], FRONT[1]), Key::with);
+            found.extend(
+                recall
+                    .blocks
+                    .or_find(key, || shared.flat_map(|shared| standing(view, [n, m], fronts, shared)).collect()),
+            );
         }
         found
     };

@@ -2,6 +2,7 @@
 
 use super::recall::Key;
 use crate::bands::{BAND_ROWS, map_bands};
+use crate::bits::{Bits, lowest};
 use crate::ends::{around, wider};
 use crate::grid::Grid;
 
@@ -42,6 +43,21 @@ impl Patches {
             let mut keys = vec![meanings; across];
             for row in band.map(|y| grid.row(y)) {
                 keys.iter_mut().zip(row.chunks(SIDE)).for_each(|(key, pixels)| *key = key.bytes(pixels));
+            }
+            keys
+        });
+        Self { size: [across, keys.len()], keys: keys.concat() }
+    }
+
+    /// Those of a raster so many pixels wide and high.
+    pub fn of_bits(bits: &Bits, [width, height]: [usize; 2], threads: usize) -> Self {
+        let across = width.div_ceil(SIDE);
+        let keys = map_bands([width, height], threads, |band| {
+            let mut keys = vec![Key::default(); across];
+            for y in band {
+                for (key, x) in keys.iter_mut().zip((0..width).step_by(SIDE)) {
+                    *key = key.with(bits.word(y * width + x) & lowest(width - x));
+                }
             }
             keys
         });

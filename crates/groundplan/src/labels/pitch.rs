@@ -3,10 +3,12 @@
 
 use super::Evidence;
 use super::turned::Turned;
+use crate::bands::{fold, worth};
 use crate::ends::sorted;
 use crate::gradients::SPECK;
 use crate::on_line::OnLine;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Lags are counted in steps of this many metres, between the shortest and the longest that are looked at.
 const STEP: f64 = 0.05;
@@ -67,20 +69,17 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     if all.iter().all(|[once, twice]| once.1.min(twice.1) < CONTRAST) {
         return None;
     }
-    let mut faces = vec![0.0; lags];
-    for (offset, places) in &lines {
-        let beside = [-1.0, 1.0].map(|side| taken(view, *offset, side));
-        let speck = |&place: &i32| {
-            let column = view.column(view.start[0] + f64::from(place) * STEP);
-            Speck { column, sums: [column, column + 1].map(|n| beside.each_ref().map(|sums| sums[n])) }
-        };
-        let specks: Vec<Speck> = places.iter().map(speck).collect();
-        pairs(places, first - BASE..lags, |lag, [one, other]| {
-            if is_face(&specks[one], &specks[other]) {
-                faces[lag] += 1.0;
-            }
-        });
-    }
+    let of_line = |n: usize| {
+        let (offset, places) = &lines[n];
+        let beside = [offset - BESIDE.1, offset + BESIDE.1];
+        let key = || view.key_of_cells(view.key_on_line(evidence, *offset), beside);
+        evidence.recall.faced.or_find(key, || Arc::new(along_faces(view, *offset, places, first - BASE..lags)))
+    };
+    let add = |sums: &mut Vec<u32>, more: &[u32]| sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+    let threads = worth(view.size[0] * view.size[1], evidence.threads);
+    let empty = || vec![0; lags];
+    let faces = fold(lines.len(), threads, empty, |sums, n| add(sums, &of_line(n)), |sums, more| add(sums, &more));
+    let faces: Vec<f64> = faces.into_iter().map(f64::from).collect();
     let found: Vec<(f64, f64)> = (first..=last)
         .zip(all)
         .map(|(lag, all)| {
@@ -94,6 +93,23 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     let most = tops.iter().map(|&n| found[n].0).fold(0.0, f64::max);
     let pitch = first + tops.into_iter().find(|&n| found[n].0 >= FUNDAMENTAL * most)?;
     Some(between_steps(&sums, pitch) * STEP)
+}
+
+/// How many pairs of specks on a line, of those so far apart, are as many steps apart with a row beside them.
+fn along_faces(view: &Turned, offset: f64, places: &[i32], lags: Range<usize>) -> Vec<u32> {
+    let beside = [-1.0, 1.0].map(|side| taken(view, offset, side));
+    let speck = |&place: &i32| {
+        let column = view.column(view.start[0] + f64::from(place) * STEP);
+        Speck { column, sums: [column, column + 1].map(|n| beside.each_ref().map(|sums| sums[n])) }
+    };
+    let specks: Vec<Speck> = places.iter().map(speck).collect();
+    let mut faces = vec![0; lags.end];
+    pairs(places, lags, |lag, [one, other]| {
+        if is_face(&specks[one], &specks[other]) {
+            faces[lag] += 1;
+        }
+    });
+    faces
 }
 
 /// Calls `visit` with the lag of each pair of some places that lie so far apart, ascending, and which two they are.

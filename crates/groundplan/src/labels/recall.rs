@@ -7,7 +7,8 @@
 use super::corridors::Strip;
 use super::patches::{Area, Patches};
 use super::period::Period;
-use super::rooms::{Bar, Width};
+use super::racks::Row;
+use super::rooms::{Bar, Part, Width};
 use super::squares::Band;
 use super::stretches;
 use super::sums::Told;
@@ -121,7 +122,19 @@ kinds! {
     /// Stretches of such strips that are not closed, from column to column.
     open: Vec<Range<usize>>,
     ragged: Vec<stretches::Found>,
+    /// In which columns of a view structure lies on a line, and in which something touches it.
+    lined: [Bits; 2],
+    /// Of the specks on a line, how many pairs with a row beside them are so many steps apart.
+    faced: Arc<Vec<u32>>,
+    /// Of a line.
+    gaps: Vec<Bar>,
+    /// What stands between two lines with floor before it.
+    blocks: Vec<Row>,
+    /// What is free in rows of the raster.
+    free: Arc<Part>,
     narrows: Vec<Bar>,
+    /// Rings of regions, simplified.
+    rings: Arc<Vec<[i64; 2]>>,
     /// Of runs of the free space along rows.
     widths: Vec<Width>,
     /// Rows of views.
@@ -181,6 +194,25 @@ impl<T: Clone> Found<T> {
         self.if_so(key, |_| true, find)
     }
 
+    /// The same of many, of which those that are not known are found together: by their places.
+    pub fn or_find_some(
+        &self,
+        count: usize,
+        key: impl Fn(usize) -> Key,
+        find: impl FnOnce(&[usize]) -> Vec<T>,
+    ) -> Vec<T> {
+        let all: Vec<usize> = (0..count).collect();
+        let Some(now) = &self.now else { return find(&all) };
+        let keys: Vec<Key> = all.iter().map(|&n| key(n)).collect();
+        let known: Vec<Option<T>> = keys.iter().map(|key| self.before.get(key).cloned()).collect();
+        let others: Vec<usize> = all.into_iter().filter(|&n| known[n].is_none()).collect();
+        let found = if others.is_empty() { Vec::new() } else { find(&others) };
+        let mut found = found.into_iter();
+        let all: Vec<T> = known.into_iter().filter_map(|known| known.or_else(|| found.next())).collect();
+        now.lock().unwrap_or_else(PoisonError::into_inner).extend(keys.into_iter().zip(all.iter().cloned()));
+        all
+    }
+
     /// The same, if what was found before holds.
     fn if_so(&self, key: impl FnOnce() -> Key, holds: impl FnOnce(&T) -> bool, find: impl FnOnce() -> T) -> T {
         let Some(now) = &self.now else { return find() };
@@ -224,6 +256,27 @@ mod tests {
             Vec::new()
         });
         assert!(looked);
+    }
+
+    #[test]
+    fn of_many_those_that_are_not_known_are_found_together() {
+        let mut memory = Memory::default();
+        let mut asked = |keys: &[u64]| {
+            let recall = Recall::new(Some(memory.clone()));
+            let mut sought = Vec::new();
+            let key = |n: usize| Key::default().with(keys[n]);
+            let found = recall.gaps.or_find_some(keys.len(), key, |some| {
+                sought = some.to_vec();
+                some.iter().map(|&n| vec![Bar { ends: [[keys[n] as f64; 2]; 2] }]).collect()
+            });
+            let of = |key: &u64| vec![Bar { ends: [[*key as f64; 2]; 2] }];
+            assert_eq!(found, keys.iter().map(of).collect::<Vec<_>>());
+            memory = recall.memory();
+            sought
+        };
+        assert_eq!(asked(&[1, 2, 3]), [0, 1, 2]);
+        assert_eq!(asked(&[3, 4, 1, 5]), [1, 3]);
+        assert_eq!(asked(&[5, 4, 3, 1]), [] as [usize; 0]);
     }
 
     #[test]

@@ -131,7 +131,7 @@ impl Plan {
         found.retain(|way| !is_on(way));
         let found = crossed::without_bays(evidence, look, views, found);
         let threads = evidence.threads;
-        let standing = Standing::new(views, threads);
+        let standing = Standing::new(views, evidence.recall, threads);
         // What was too short to stay bars no way whose sides are no lines, but tells how wide that is.
         let pieces = placed(views, found.iter().map(Strip::place));
         let over: Vec<Strip> = over.into_iter().map(|way| led::sided_by(views, way, &found, &pieces)).collect();

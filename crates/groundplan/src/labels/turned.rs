@@ -11,7 +11,9 @@ use super::shares::Shares;
 use super::summed::{Part, Summed};
 use super::sums::{Cells, Source, Told, What};
 use crate::bits::Bits;
-use crate::grid::rounded;
+use crate::ends::wider;
+use crate::gradients;
+use crate::grid::{Frame, rounded};
 use crate::on_line::OnLine;
 use crate::radiograms::weight;
 use std::ops::Range;
@@ -235,7 +237,7 @@ impl Turned {
             .map(|n| lines.offsets[n])
             .collect();
         offsets.sort_by(f64::total_cmp);
-        let near = NEAR.0.max(NEAR.1 * frame.resolution);
+        let near = Self::near_line(frame);
         let sides = self.grounds.sides();
         for &(offset, _) in &sides {
             let at = offsets.partition_point(|&other| other < offset);
@@ -244,9 +246,48 @@ impl Turned {
                 offsets.insert(at, offset);
             }
         }
-        let mut covered = vec![Bits::new(self.size[0]); offsets.len()];
-        let mut touched = covered.clone();
+        let key = |n: usize| self.key_on_line(evidence, offsets[n]);
+        let on = evidence.recall.lined.or_find_some(offsets.len(), key, |some| {
+            self.on_lines(evidence, &some.iter().map(|&n| offsets[n]).collect::<Vec<_>>())
+        });
+        let (mut covered, mut touched): (Vec<_>, Vec<_>) =
+            on.into_iter().map(|[covered, touched]| (covered, touched)).unzip();
         let lines = OnLine::new(&offsets, near);
+        for (offset, along) in sides {
+            for line in lines.at(offset) {
+                for bits in [&mut covered[line], &mut touched[line]] {
+                    bits.fill(self.column(along[0])..self.column(along[1]) + 1);
+                }
+            }
+        }
+        self.offsets = Arc::new(offsets);
+        (self.covered, self.touched) = (Arc::new(covered), Arc::new(touched));
+    }
+
+    /// Edge pixels this near to a line lie on it, metres.
+    fn near_line(frame: &Frame) -> f64 {
+        NEAR.0.max(NEAR.1 * frame.resolution)
+    }
+
+    /// The key of all edge pixels on a line, where what is found is kept.
+    pub fn key_on_line(&self, evidence: &Evidence, offset: f64) -> Key {
+        let Some(patches) = evidence.recall.patches(evidence.grid, evidence.threads) else { return Key::default() };
+        let frame = &evidence.grid.frame;
+        // And the pixels around that bear on them.
+        let beside = Self::near_line(frame) + gradients::reach_across(frame.resolution, evidence.parameters);
+        let at = |u: f64, v: f64| frame.to_pixels(self.to_map([self.start[0] + u, v]));
+        let lanes = [offset - beside, offset + beside].map(|v| at(0.0, v));
+        let next = at(self.cell, offset - beside);
+        let step = [0, 1].map(|axis| next[axis] - lanes[0][axis]);
+        let numbers = [self.angle, self.cell, self.start[0], offset];
+        numbers.into_iter().fold(patches.under(lanes, step, self.size[0]), Key::number)
+    }
+
+    /// In which columns edge pixels on some lines lie along them, and in which any do.
+    fn on_lines(&self, evidence: &Evidence, offsets: &[f64]) -> Vec<[Bits; 2]> {
+        let frame = &evidence.grid.frame;
+        let lines = OnLine::new(offsets, Self::near_line(frame));
+        let mut found = vec![[Bits::new(self.size[0]), Bits::new(self.size[0])]; offsets.len()];
         let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
         let on_grid = frame.angle_to_grid(self.angle);
         evidence.gradients.iter().for_each(|(pixel, along, magnitude)| {
@@ -257,22 +298,14 @@ impl Turned {
             }
             let lies = weight(f64::from(along), magnitude, on_grid, tolerance) > 0;
             let column = self.column(u);
-            for line in on {
-                touched[line].insert(column);
+            for [covered, touched] in &mut found[on] {
+                touched.insert(column);
                 if lies {
-                    covered[line].insert(column);
+                    covered.insert(column);
                 }
             }
         });
-        for (offset, along) in sides {
-            for line in lines.at(offset) {
-                for bits in [&mut covered[line], &mut touched[line]] {
-                    bits.fill(self.column(along[0])..self.column(along[1]) + 1);
-                }
-            }
-        }
-        self.offsets = Arc::new(offsets);
-        (self.covered, self.touched) = (Arc::new(covered), Arc::new(touched));
+        found
     }
 
     /// Keys of the view and of its lines.
@@ -291,12 +324,26 @@ impl Turned {
 
     /// The key of all that can be seen of a strip, and so far beyond its sides, metres.
     pub fn key(&self, [low, high]: [f64; 2], beyond: f64) -> Key {
-        // What is rounded to cells reaches a cell farther at most.
-        let ends = [low - beyond - 2.0 * self.cell, high + beyond + 2.0 * self.cell];
-        let (from, to) = self.cells(ends[0], ends[1]);
+        let ends = self.rounded_within([low - beyond, high + beyond]);
         let [first, last] = ends.map(|v| self.offsets.partition_point(|&offset| offset < v));
-        let rows = self.rows[from..to].iter().map(|row| row.key);
-        rows.chain(self.keys.1[first..last].iter().copied()).fold(self.keys.0.number(low).number(high), Key::key)
+        let lines = self.keys.1[first..last].iter().copied();
+        self.rows_at(ends).chain(lines).fold(self.keys.0.number(low).number(high), Key::key)
+    }
+
+    /// A key with that of all cells from one place across to another.
+    pub fn key_of_cells(&self, key: Key, [low, high]: [f64; 2]) -> Key {
+        self.rows_at(self.rounded_within([low, high])).fold(key.number(low).number(high), Key::key)
+    }
+
+    /// What is rounded to cells reaches a cell farther at most.
+    fn rounded_within(&self, across: [f64; 2]) -> [f64; 2] {
+        wider(across, 2.0 * self.cell)
+    }
+
+    /// The keys of the rows of cells from one place across to another.
+    fn rows_at(&self, [low, high]: [f64; 2]) -> impl Iterator<Item = Key> {
+        let (from, to) = self.cells(low, high);
+        self.rows[from..to].iter().map(|row| row.key)
     }
 
     /// The lines from one place across to another, both included.

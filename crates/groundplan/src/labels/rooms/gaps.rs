@@ -1,10 +1,13 @@
 //! Gaps in walls: where a line of the map is free between structure that lies along it.
 
 use super::super::Evidence;
+use super::super::patches::Patches;
+use super::super::recall::Key;
 use super::raster::Raster;
 use crate::bands::map_each;
 use crate::ends::around;
-use crate::grid::angle_between;
+use crate::gradients;
+use crate::grid::{Frame, angle_between};
 use crate::on_line::OnLine;
 use crate::subdivision::distance;
 
@@ -65,8 +68,13 @@ const JAMB_PIXELS: i32 = 4;
 pub fn along_lines(evidence: &Evidence, raster: &Raster) -> Vec<Bar> {
     let frame = &evidence.grid.frame;
     let angles = &evidence.directions.angles;
+    let keyed = evidence.recall.patches(evidence.grid, evidence.threads).map(|seen| Keyed {
+        seen,
+        free: Patches::of_bits(&raster.free, [raster.width, raster.height], evidence.threads),
+        beside: on_line(frame) / raster.side as f64
+            + raster.pixels(gradients::reach_across(frame.resolution, evidence.parameters)),
+    });
     let along = |direction: usize| {
-        let mut bars = Vec::new();
         let angle = angles[direction];
         let angle_on_grid = frame.angle_to_grid(angle);
         let mut members: Vec<(f64, usize)> = (0..evidence.lines.len())
@@ -75,12 +83,16 @@ pub fn along_lines(evidence: &Evidence, raster: &Raster) -> Vec<Bar> {
             .collect();
         members.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let offsets: Vec<f64> = members.into_iter().map(|(offset, _)| offset).collect();
-        let lined = lined(evidence, raster, angle_on_grid, &offsets);
-        for (&offset, lined) in offsets.iter().zip(&lined) {
-            let line = Line::new(raster, angle_on_grid, offset);
-            line.gaps(lined, evidence.parameters.rooms_max_opening, &mut bars);
-        }
-        bars
+        let line = |offset: f64| Line::new(raster, angle_on_grid, offset);
+        let key = |n: usize| keyed.as_ref().map_or(Key::default(), |keyed| keyed.key(&line(offsets[n]), offsets[n]));
+        let gaps = evidence.recall.gaps.or_find_some(offsets.len(), key, |some| {
+            let offsets: Vec<f64> = some.iter().map(|&n| offsets[n]).collect();
+            let lined = lined(evidence, raster, angle_on_grid, &offsets);
+            let gaps =
+                |(&offset, lined): (&f64, &Vec<i64>)| line(offset).gaps(lined, evidence.parameters.rooms_max_opening);
+            offsets.iter().zip(&lined).map(gaps).collect()
+        });
+        gaps.concat()
     };
     map_each(angles.len(), evidence.threads, along).concat()
 }
@@ -89,8 +101,7 @@ pub fn along_lines(evidence: &Evidence, raster: &Raster) -> Vec<Bar> {
 fn lined(evidence: &Evidence, raster: &Raster, angle: f64, offsets: &[f64]) -> Vec<Vec<i64>> {
     let (cos, sin) = (libm::cos(angle), libm::sin(angle));
     let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
-    let near = (ON_LINE.0 / evidence.grid.frame.resolution).max(ON_LINE.1);
-    let lines = OnLine::new(offsets, near);
+    let lines = OnLine::new(offsets, on_line(&evidence.grid.frame));
     let mut steps: Vec<Vec<i64>> = vec![Vec::new(); offsets.len()];
     evidence.gradients.iter().for_each(|(pixel, along, _)| {
         if angle_between(f64::from(along), angle) > tolerance {
@@ -107,6 +118,38 @@ fn lined(evidence: &Evidence, raster: &Raster, angle: f64, offsets: &[f64]) -> V
         list.dedup();
     }
     steps
+}
+
+/// Edge pixels this near to a line lie on it, pixels.
+fn on_line(frame: &Frame) -> f64 {
+    (ON_LINE.0 / frame.resolution).max(ON_LINE.1)
+}
+
+/// Keys of what gaps are found from: of the map, and of what is free on the raster.
+struct Keyed<'a> {
+    seen: &'a Patches,
+    free: Patches,
+    /// So far beside a line lies what bears on edge pixels on it, pixels of the raster.
+    beside: f64,
+}
+
+impl Keyed<'_> {
+    /// The key of what gaps in a line are found from.
+    fn key(&self, line: &Line, offset: f64) -> Key {
+        let Line { raster, origin, step } = *line;
+        let (from, to) = line.span();
+        // In the raster's pixels: the lanes so far to both sides, from so far before its first step to so far beyond its last.
+        let lanes = |along: f64, across: f64| {
+            let start = [0, 1].map(|axis| origin[axis] + step[axis] * (from as f64 - along));
+            let lane = |by: f64| [start[0] - step[1] * by, start[1] + step[0] * by];
+            ([-across, across].map(lane), (to - from + 2 * along.ceil() as i64).max(0) as usize)
+        };
+        let (free, count) = lanes(0.0, line.near() as f64 + 1.0);
+        let free = self.free.under(free, step, count);
+        let (seen, count) = lanes(raster.pixels(JAMB) + self.beside, self.beside);
+        let seen = self.seen.under(seen.map(|place| raster.to_grid(place)), step, count * raster.side);
+        seen.key(free).number(offset).number(raster.resolution)
+    }
 }
 
 /// One line, walked in steps of a pixel.
@@ -139,6 +182,11 @@ impl<'a> Line<'a> {
         (low.floor() as i64, high.ceil() as i64 + 1)
     }
 
+    /// So many pixels to either side are of its band.
+    fn near(&self) -> i64 {
+        self.raster.pixels(NEAR).round().max(1.0) as i64
+    }
+
     /// Free all across the line's band; outside the raster nothing is.
     fn is_free(&self, step: i64, near: i64) -> bool {
         let [x, y] = self.place(step);
@@ -149,9 +197,10 @@ impl<'a> Line<'a> {
     }
 
     /// The gaps beside which edge pixels lie along the line, at some steps in ascending order.
-    fn gaps(&self, lined: &[i64], widest: f64, bars: &mut Vec<Bar>) {
+    fn gaps(&self, lined: &[i64], widest: f64) -> Vec<Bar> {
+        let mut bars = Vec::new();
         let pixels = |metres: f64| self.raster.pixels(metres);
-        let near = pixels(NEAR).round().max(1.0) as i64;
+        let near = self.near();
         let jamb = pixels(JAMB).max(1.0) as i64;
         let (from, to) = self.span();
         // Farther from such a pixel no step bears on a gap beside it.
@@ -176,6 +225,7 @@ impl<'a> Line<'a> {
                 }
             }
         }
+        bars
     }
 }
 

@@ -36,7 +36,7 @@ pub use corridors::Corridor;
 use doorways::Doorway;
 use fine::Fine;
 pub use gaps::Bar;
-pub use raster::Raster;
+pub use raster::{Part, Raster};
 use regions::Region;
 pub use runs::{Run, touching};
 
@@ -62,7 +62,7 @@ pub struct Space {
 impl Space {
     /// Nothing when nothing is free.
     pub fn new(grid: &Grid, threads: usize, recall: &Recall) -> Option<Self> {
-        let raster = Raster::new(grid, threads)?;
+        let raster = Raster::new(grid, threads, recall)?;
         let clearance = Clearance::new(&raster, threads);
         let mut narrows = narrows::find(&raster, &clearance, threads, recall);
         narrows.retain(|narrow| !narrow.is_at_solid(&raster));
@@ -119,7 +119,7 @@ pub fn find(
     let doorways = doorways::find(raster, &numbers, cells.openings);
     let fine = Fine::new(evidence.grid, raster, numbers, regions.len());
     let faces = faces(evidence, division, &fine, regions.len());
-    let mut outlines = outlines::find(&fine, regions.len(), evidence.threads);
+    let mut outlines = outlines::find(&fine, regions.len(), evidence.recall, evidence.threads);
     let square = evidence.grid.frame.resolution.powi(2);
     let placed = |region: &Region| {
         let area = fine.areas[region.number as usize] as f64 * square;

@@ -1,10 +1,12 @@
 //! Outlines of regions: along the borders of their pixels, the same on both sides of a border, and simplified by less
 //! than what lies between two borders, so that no two outlines cross.
 
+use super::super::recall::{Key, Recall};
 use super::fine::Fine;
 use crate::bands::map_each;
 use crate::bits::Bits;
 use crate::labels::outline::area;
+use std::sync::Arc;
 
 /// A point of an outline, in half pixels of the regions' raster ([`Fine`]).
 type Point = [i64; 2];
@@ -20,27 +22,26 @@ const MANY: usize = 1 << 10;
 type Rings = Vec<Vec<[f64; 2]>>;
 
 /// The rings around each region by its number, the outer one first, counter-clockwise, then its holes.
-pub fn find(fine: &Fine, count: usize, threads: usize) -> Vec<Rings> {
+pub fn find(fine: &Fine, count: usize, recall: &Recall, threads: usize) -> Vec<Rings> {
     let starts = starts(fine);
     // Each thread goes round regions of its own.
     let parts = threads.min(starts.len() / MANY + 1).max(1);
-    let mut made =
-        map_each(parts, threads, |part| rings(fine, count, &starts, |number| number as usize % parts == part));
+    let of_part = |part| rings(fine, count, &starts, recall, |number| number as usize % parts == part);
+    let mut made = map_each(parts, threads, of_part);
     (0..=count).map(|number| std::mem::take(&mut made[number % parts][number])).collect()
 }
 
 /// Those of some regions.
-fn rings(fine: &Fine, count: usize, starts: &[u32], is_own: impl Fn(u32) -> bool) -> Vec<Rings> {
+fn rings(fine: &Fine, count: usize, starts: &[u32], recall: &Recall, is_own: impl Fn(u32) -> bool) -> Vec<Rings> {
     let mut rings: Vec<Rings> = vec![Vec::new(); count + 1];
     // Every ring has a lower side on it, and of each such stretch all that lies side by side.
     let mut seen = Seen { starts, passed: Bits::new(starts.len()) };
     fine.numbers.lower_sides(|run, pixels| {
         if is_own(run.number) && !seen.contains(pixels.start) {
             let ring = Tracer { fine, region: run.number }.trace((pixels.start, 0), &mut seen);
-            let mut simple = simplify(&ring);
-            simple.shrink_to_fit();
+            let simple = recall.rings.or_find(|| key(&ring), || Arc::new(simplify(&ring)));
             let ring: Vec<[f64; 2]> =
-                simple.into_iter().map(|[x, y]| fine.to_grid([x as f64 / 2.0, y as f64 / 2.0])).collect();
+                simple.iter().map(|&[x, y]| fine.to_grid([x as f64 / 2.0, y as f64 / 2.0])).collect();
             if ring.len() >= 3 {
                 rings[run.number as usize].push(ring);
             }
@@ -170,6 +171,12 @@ impl Tracer<'_> {
     }
 }
 
+/// The key of a ring.
+fn key(ring: &[Node]) -> Key {
+    let node = |key: Key, &([x, y], is_node): &Node| key.with((x << 33 | y << 1) as u64 | u64::from(is_node));
+    ring.iter().fold(Key::default().with(ring.len() as u64), node)
+}
+
 /// Between points where three regions meet, a border is simplified the same from both its sides.
 fn simplify(ring: &[Node]) -> Vec<Point> {
     let count = ring.len();
@@ -200,6 +207,7 @@ fn simplify(ring: &[Node]) -> Vec<Point> {
         kept.push(chain[0]);
         kept.extend((1..length).filter(|&k| keep[k]).map(|k| chain[k]));
     }
+    kept.shrink_to_fit();
     kept
 }
 

@@ -1,9 +1,13 @@
 //! The free space as a raster with a border of its own.
 
+use super::super::patches::Area;
+use super::super::recall::{Key, Recall};
 use super::islands::{self, Islands};
 use crate::bands::map_bands;
 use crate::bits::{Bits, WORD, lowest, word_of};
 use crate::grid::{Grid, State};
+use std::ops::Range;
+use std::sync::Arc;
 
 /// The part of the map that holds free space, with one pixel of not-free around it, so that no pass asks for borders.
 /// Places on it are in pixels; the centre of pixel (x, y) is (x, y), and rows run upwards.
@@ -30,7 +34,7 @@ const MOST: usize = 1 << 31;
 
 impl Raster {
     /// Nothing when there is no free space.
-    pub fn new(grid: &Grid, threads: usize) -> Option<Self> {
+    pub fn new(grid: &Grid, threads: usize, recall: &Recall) -> Option<Self> {
         let resolution = grid.frame.resolution;
         let mut side = (SIDE / resolution + 1e-9).floor().clamp(1.0, MOST_PIXELS) as usize;
         while (grid.frame.width / side).saturating_mul(grid.frame.height / side) >= MOST {
@@ -40,7 +44,14 @@ impl Raster {
         if w == 0 || h == 0 {
             return None;
         }
-        let parts = map_bands([w * side * side, h], threads, |band| Part::new(grid, side, w, band));
+        let patches = recall.patches(grid, threads);
+        let key = |band: &Range<usize>| {
+            let seen = Area::NONE.with([0, band.start * side]).with([w * side - 1, band.end * side - 1]);
+            patches.map_or(Key::default(), |patches| patches.over(seen)).with(band.start as u64)
+        };
+        let parts = map_bands([w * side * side, h], threads, |band| {
+            recall.free.or_find(|| key(&band), || Arc::new(Part::new(grid, side, w, band.clone())))
+        });
         let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
         for part in parts.iter().filter(|part| part.rows[0] <= part.rows[1]) {
             low = [low[0].min(part.columns[0]), low[1].min(part.rows[0])];
@@ -126,7 +137,8 @@ impl Raster {
 }
 
 /// Rows of the free space before it is known where that begins and ends.
-struct Part {
+#[derive(Debug)]
+pub struct Part {
     first: usize,
     free: Bits,
     /// The first and the last row and column that hold some of it; the first row is beyond the last where none does.
@@ -135,7 +147,7 @@ struct Part {
 }
 
 impl Part {
-    fn new(grid: &Grid, side: usize, width: usize, band: std::ops::Range<usize>) -> Self {
+    fn new(grid: &Grid, side: usize, width: usize, band: Range<usize>) -> Self {
         let is_free = grid.table.states.map(|s| s == State::Free);
         let mut part =
             Self { first: band.start, free: Bits::new(band.len() * width), rows: [usize::MAX, 0], columns: [width, 0] };
