@@ -1,0 +1,87 @@
+"""Maps from arrays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from _maps import EXPECTED, Pixels, hall
+from _reading import states
+
+import groundplan
+from groundplan._errors import MapError
+from groundplan.maps import FREE, OCCUPIED, UNKNOWN, from_array
+
+
+def test_an_occupancy_grid_is_flipped_and_not_copied() -> None:
+    data = np.array([[0, 100, -1], [50, 25, 65], [127, -128, 101]], np.int8)
+    got = from_array(data, 0.1, (1.0, 2.0, 0.5))
+    assert np.shares_memory(got.pixels, data)
+    assert got.values[got.pixels].tolist() == [[-1, -1, -1], [50, 25, 65], [0, 100, -1]]
+    assert states(got).tolist() == [
+        [UNKNOWN, UNKNOWN, UNKNOWN],
+        [UNKNOWN, FREE, OCCUPIED],
+        [FREE, OCCUPIED, UNKNOWN],
+    ]
+    assert got.origin == (1.0, 2.0, 0.5)
+    assert from_array(data, 0.1, occupied_thresh=0.5).states[50] == OCCUPIED
+
+
+def test_a_bool_array_is_true_where_occupied() -> None:
+    walls = hall() == 0
+    got = from_array(walls, 0.05, image="hall")
+    assert np.shares_memory(got.pixels, walls)
+    assert (states(got) == np.where(walls, OCCUPIED, FREE)).all()
+    assert got.image == "hall"
+    assert got.warnings == ()
+
+
+def test_a_grey_array_is_not_copied() -> None:
+    pixels = hall()
+    got = from_array(pixels, 0.05, (0.0, 0.0))
+    assert np.shares_memory(got.pixels, pixels)
+    assert (states(got) == EXPECTED).all()
+
+
+@pytest.mark.parametrize(
+    "array", [np.zeros((2, 2, 3), np.uint8), np.zeros((0, 4), np.uint8), np.zeros((2, 2)), np.zeros((2, 2), np.int64)]
+)
+def test_arrays_that_are_no_maps(array: Pixels) -> None:
+    with pytest.raises(MapError) as caught:
+        from_array(array, 0.05)
+    assert caught.value.code == "map.pixels"
+
+
+def test_masked_pixels_are_refused_and_a_mask_of_none_is_not() -> None:
+    greys = hall()
+    for take in (from_array, lambda array, resolution: groundplan.survey(array, resolution=resolution)):
+        with pytest.raises(MapError, match="12 pixels of the array are masked") as caught:
+            take(np.ma.masked_array(greys, np.arange(greys.size).reshape(greys.shape) < 12), 0.05)
+        assert caught.value.code == "map.pixels" and ".filled(205)" in str(caught.value.hint)
+    none = from_array(np.ma.masked_array(greys), 0.05)
+    assert type(none.pixels) is np.ndarray and (states(none) == EXPECTED).all()
+    with pytest.raises(groundplan.ParameterError, match="pixels of the patch are masked"):
+        survey = groundplan.survey(greys, resolution=0.05)
+        survey.update(np.ma.masked_array(greys[:4, :4], np.eye(4, dtype=bool)), 0, 0)
+
+
+def test_the_hint_for_shares_of_one_makes_a_map() -> None:
+    shares = np.array([[0.0, 1.0], [np.nan, 0.5]])
+    with pytest.raises(MapError) as caught:
+        from_array(shares, 0.05)
+    assert "np.where(np.isfinite(a), np.rint(100 * a), -1).astype('int8')" in str(caught.value.hint)
+    got = from_array(np.where(np.isfinite(shares), np.rint(100 * shares), -1).astype("int8"), 0.05)
+    assert got.values[got.pixels].tolist() == [[-1, 50], [0, 100]]
+
+
+@pytest.mark.parametrize("origin", [[1.0, 2.0], (1, 2, 0.0), np.array([1.0, 2.0, 0.0])])
+def test_an_origin_is_a_list_a_tuple_or_an_array(origin: Any) -> None:
+    assert groundplan.survey(hall(), resolution=0.05, origin=origin).map.origin == (1.0, 2.0, 0.0)
+
+
+@pytest.mark.parametrize("origin", [3, 3.5, "12", (1, 2, 3, 4), np.zeros((1, 3))])
+def test_an_origin_that_is_none_is_named(origin: Any) -> None:
+    with pytest.raises(MapError) as caught:
+        groundplan.survey(hall(), resolution=0.05, origin=origin)
+    assert caught.value.code == "map.origin"
