@@ -1,12 +1,13 @@
-"""Plain halls, drawn without noise: bench/plain.py [FIRST [COUNT]].
+"""Plain halls, drawn without noise, and as a lidar hits them: bench/plain.py [FIRST [COUNT]].
 
 The least that one may ask of a survey: a closed hall with blocks of racks in rows, aisles between them, ways across
 between the blocks and past the last ones. What a person would count is known from the plan. Every measure comes from
 the hall's seed: widths, depths and lengths, alike or each its own, racks at the long walls or aisles, a hall whose last
 block leans on a wall, turned or along the pixels, 2.5 to 10 cm; racks are solid, or outlines of what nobody saw, or
-outlines of floor, and deep ones may have a flue. The table has how many of COUNT (400) halls from the seeds FIRST (0)
-on have other junctions than the plan, and how many another number of racks where it has three or more; then those with
-other junctions. No bar, so no exit code.
+outlines of floor, and deep ones may have a flue. The tables have how many of COUNT (400) halls from the seeds FIRST (0)
+on have other junctions than the plan, and how many another number of racks where it has three or more: as they are
+drawn, and as a lidar hits them, which sees the first pixel of what stands and misses one in five. Then those with other
+junctions as they are drawn. No bar, so no exit code.
 """
 
 from __future__ import annotations
@@ -34,6 +35,9 @@ SIDE, SIDE_PIXELS = 0.06, 1.5
 BACK_TO_BACK = 1.3
 #: So many racks make a place of racks.
 RACKS = 3
+#: What a lidar misses of what it could hit.
+MISSED = 0.2
+KINDS = ("L", "T", "X", "Y", "end")
 #: So many halls are named.
 NAMED = 30
 
@@ -122,6 +126,14 @@ def picture(hall: Hall) -> npt.NDArray[np.uint8]:
     return drawn
 
 
+def as_hit(picture: npt.NDArray[np.uint8], seed: int) -> npt.NDArray[np.uint8]:
+    """What of it beams from the floor hit: the first pixel of what stands, and not all of them."""
+    free = np.pad(picture == GREYS[FREE], 1)
+    beside = free[:-2, 1:-1] | free[2:, 1:-1] | free[1:-1, :-2] | free[1:-1, 2:]
+    is_hit = beside & (np.random.default_rng(seed).random(picture.shape) >= MISSED)
+    return np.where((picture == GREYS[OCCUPIED]) & ~is_hit, GREYS[UNKNOWN], picture).astype(np.uint8)
+
+
 def planned(hall: Hall) -> Counter[str]:
     """How many of each kind a person would count."""
     aisles, between = len(hall.aisles), len(hall.lengths) - 1
@@ -133,8 +145,17 @@ def planned(hall: Hall) -> Counter[str]:
 
 def found(seed: int) -> Counter[str]:
     """The same of a survey."""
-    made = hall(seed)
-    survey = groundplan.survey(picture(made), resolution=made.resolution, threads=1)
+    return counted(picture(hall(seed)), hall(seed).resolution)
+
+
+def found_as_hit(seed: int) -> Counter[str]:
+    """And of what a lidar hits of it."""
+    return counted(as_hit(picture(hall(seed)), seed), hall(seed).resolution)
+
+
+def counted(drawn: npt.NDArray[np.uint8], resolution: float) -> Counter[str]:
+    """Junctions by their types, and racks."""
+    survey = groundplan.survey(drawn, resolution=resolution, threads=1)
     kinds = Counter(label["type"] for label in survey.of_kind("junction"))
     return kinds + Counter(rack=len(survey.of_kind("rack")))
 
@@ -146,28 +167,45 @@ def said(value: object) -> str:
     return "/".join(map(said, value)) if isinstance(value, list) else str(value)
 
 
+Plans = dict[int, tuple[Hall, Counter[str]]]
+
+
+def wrong(plans: Plans, counts: dict[int, Counter[str]]) -> tuple[set[int], set[int]]:
+    """The seeds with other junctions than the plan, and with another number of racks."""
+    junctions = {seed for seed, (_, plan) in plans.items() if any(counts[seed][kind] != plan[kind] for kind in KINDS)}
+    return junctions, {seed for seed, (_, plan) in plans.items() if counts[seed]["rack"] != plan["rack"] >= RACKS}
+
+
+def table(plans: Plans, title: str, junctions: set[int], racks: set[int]) -> None:
+    """How many are wrong, by what was drawn."""
+    print(f"{f'{len(plans)} halls, {title}':24}  other junctions  other racks    of")
+    for measure in ("look", "at_walls", "ends", "flue", "resolution"):
+        for value in sorted({getattr(made, measure) for made, _ in plans.values()}, key=str):
+            own = {seed for seed, (made, _) in plans.items() if getattr(made, measure) == value}
+            print(f"{measure:11}{said(value):10}{len(own & junctions):20}{len(own & racks):13}{len(own):6}")
+    print(f"{'all':21}{len(junctions):20}{len(racks):13}{len(plans):6}")
+
+
 def main() -> None:
     """Survey all, print the tables."""
     first, count = (*map(int, sys.argv[1:3]), *(0, 400)[len(sys.argv) - 1 :])
     seeds = range(first, first + count)
-    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
-        surveyed = dict(zip(seeds, pool.map(found, seeds, chunksize=4), strict=True))
     plans = {seed: (hall(seed), planned(hall(seed))) for seed in seeds}
-    kinds = ("L", "T", "X", "Y", "end")
-    other = {seed for seed in seeds if any(surveyed[seed][kind] != plans[seed][1][kind] for kind in kinds)}
-    racks = {seed for seed in seeds if surveyed[seed]["rack"] != plans[seed][1]["rack"] >= RACKS}
-    print(f"{count} halls             other junctions  other racks    of")
-    for measure in ("look", "at_walls", "ends", "flue", "resolution"):
-        for value in sorted({getattr(made, measure) for made, _ in plans.values()}, key=str):
-            own = {seed for seed, (made, _) in plans.items() if getattr(made, measure) == value}
-            print(f"{measure:11}{said(value):10}{len(own & other):16}{len(own & racks):13}{len(own):6}")
-    print(f"{'all':21}{len(other):16}{len(racks):13}{count:6}")
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
+        surveyed, hit = (
+            dict(zip(seeds, pool.map(of, seeds, chunksize=4), strict=True)) for of in (found, found_as_hit)
+        )
+    drawn = wrong(plans, surveyed)
+    table(plans, "as drawn", *drawn)
+    print()
+    table(plans, "as hit", *wrong(plans, hit))
+    other = drawn[0]
     for seed in sorted(other)[:NAMED]:
         made, plan = plans[seed]
         measures = "  ".join(
             f"{field.name} {said(getattr(made, field.name))}" for field in fields(made) if field.name != "corner"
         )
-        told = "  ".join(f"{kind} {surveyed[seed][kind]} for {plan[kind]}" for kind in kinds if plan[kind])
+        told = "  ".join(f"{kind} {surveyed[seed][kind]} for {plan[kind]}" for kind in KINDS if plan[kind])
         print(f"\n{seed}: {told}\n    {measures}")
 
 

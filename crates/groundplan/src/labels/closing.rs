@@ -1,7 +1,7 @@
 //! What closes a row of racks at a place: something that stands in one straight line across it, as a rack's end does.
 
 use super::look::{BLOCKED, Look};
-use super::runs::close;
+use super::runs::{close, runs};
 use super::turned::Turned;
 use crate::grid::Frame;
 
@@ -11,6 +11,10 @@ const FRAME: (f64, f64) = (0.35, 0.9);
 /// What stands so near to a line lies on it, metres; what stands so near to the row's faces is not asked.
 const ON_LINE: f64 = 0.06;
 const ON_FACE: f64 = 0.1;
+/// Along a frame or the end of a rack so much, metres, and so many pixels were not hit at times; and so much where no beam
+/// went through either, metres.
+const HOLE: (f64, f64) = (0.1, 2.0);
+const UNSEEN: f64 = 0.3;
 /// Racks that stand back to back are so far apart at most, metres.
 const FLUE: f64 = 0.3;
 /// Places along such a line are so far apart, metres.
@@ -45,21 +49,20 @@ impl Uprights<'_> {
         let reach = (FRAME.0 / step).ceil() as usize + near;
         let low = (self.across[0] + ON_FACE).min(self.middle);
         let (count, down) = self.steps(low);
-        let lines: Vec<Vec<bool>> = (0..=2 * reach)
+        let lines: Vec<Vec<u8>> = (0..=2 * reach)
             .map(|n| {
                 let u = along + (n as f64 - reach as f64) * step + (low - self.middle) * self.lean;
                 let mut samples = vec![0; count];
                 self.look.along(self.frame.to_pixels(self.view.to_map([u, low])), down, &mut samples);
-                samples.into_iter().map(|sample| sample > BLOCKED).collect()
+                samples
             })
             .collect();
+        let holes = (HOLE.0.max(HOLE.1 * step) / STEP).round() as usize;
         let is_closed =
             |stands: &[bool]| stands.iter().filter(|stands| **stands).count() as f64 >= FRAME.1 * stands.len() as f64;
         let mut closing = Closing::Open;
         for lines in lines.windows(2 * near + 1) {
-            let mut stands: Vec<bool> = (0..count).map(|k| lines.iter().any(|line| line[k])).collect();
-            // Where two racks stand back to back, each is a third of both at least.
-            close(&mut stands[count / 3..count - count / 3], (FLUE / STEP).round() as usize);
+            let stands = standing(lines, count, holes);
             if is_closed(&stands) {
                 return Closing::Whole;
             }
@@ -79,4 +82,22 @@ impl Uprights<'_> {
         let (from, to) = (at(low), at(low + depth));
         (count as usize, [0, 1].map(|axis| (to[axis] - from[axis]) / count))
     }
+}
+
+/// At which of the samples across something stands on one of some lines, but for holes of so many.
+fn standing(lines: &[Vec<u8>], count: usize, holes: usize) -> Vec<bool> {
+    // What stands at the faces holds the ends.
+    let mut stands = vec![true; count + 2];
+    (0..count).for_each(|k| stands[k + 1] = lines.iter().any(|line| line[k] > BLOCKED));
+    close(&mut stands, holes);
+    let is_unseen = |k: usize| lines.iter().any(|line| line[k - 1] == BLOCKED);
+    for (from, to) in runs(&stands, false) {
+        if to - from <= (UNSEEN / STEP).round() as usize && (from..to).all(is_unseen) {
+            stands[from..to].fill(true);
+        }
+    }
+    let mut stands = stands[1..=count].to_vec();
+    // Where two racks stand back to back, each is a third of both at least.
+    close(&mut stands[count / 3..count - count / 3], (FLUE / STEP).round() as usize);
+    stands
 }
