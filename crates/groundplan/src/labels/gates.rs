@@ -10,7 +10,9 @@ use super::through::{BETWEEN_CELLS, Seen, Through};
 use super::turned::Turned;
 use super::widths::Widths;
 use crate::bands::flat_map_each;
+use crate::bits::Bits;
 use crate::ends::{around, overlap, sorted, wider};
+use std::ops::Range;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
 const IN_LINE: (f64, f64) = (0.7, 0.5);
@@ -58,14 +60,30 @@ fn is_in(one: &Strip, two: &Strip) -> bool {
     one.direction == two.direction && overlap(one.along, two.along) > 0.0 && overlap(one.across, two.across) > 0.0
 }
 
-/// A row with what lies beyond its ends up to the walls there, which both ways beside it end at, if that may be a way
-/// and no other is there.
+/// In which of a range of columns, the first of which is the first bit, a wall ends a row and both ways beside it; or one
+/// of them, where the other leads on through a gate in that wall for longer than it is wide.
+pub fn walled(view: &Turned, strips: &[Strip], row: &Row, between: [usize; 2], columns: Range<usize>) -> Bits {
+    let [below, above] = between.map(|n| &strips[n]);
+    let [low, high] = [below.across[0], above.across[1]];
+    let mut walled = view.some_closed(columns.clone(), low, high);
+    for (other, low, high) in [(above, low, row.across[1]), (below, row.across[0], high)] {
+        let [from, to] = [other.along[0] + other.width(), other.along[1] - other.width()];
+        let bit = |u: f64| view.column(u).clamp(columns.start, columns.end) - columns.start;
+        if from < to {
+            let mut leads_on = Bits::new(columns.len());
+            leads_on.fill(bit(from)..bit(to));
+            walled |= &(&view.some_closed(columns.clone(), low, high) & &leads_on);
+        }
+    }
+    walled
+}
+
+/// A row with what lies beyond its ends up to the walls there, if that may be a way and no other is there.
 fn up_to_walls(views: &[Turned], strips: &[Strip], placed: &[Beside], widest: f64, row: &Row) -> Row {
     let mut reaching = row.clone();
-    let (Some([below, above]), Some(other)) = (row.between, crossing(views, row.direction)) else { return reaching };
+    let (Some(between), Some(other)) = (row.between, crossing(views, row.direction)) else { return reaching };
     let view = &views[row.direction];
     let middle = f64::midpoint(row.across[0], row.across[1]);
-    let [low, high] = [strips[below].across[0], strips[above].across[1]];
     let near = leading_across([view, other], placed, row, widest);
     let is_crossed = |u: f64| {
         near.iter().map(|&n| &strips[n]).any(|strip| {
@@ -82,7 +100,7 @@ fn up_to_walls(views: &[Turned], strips: &[Strip], placed: &[Beside], widest: f6
         let beyond =
             if side == 0 { column.saturating_sub(most)..column } else { column..(column + most).min(view.size[0]) };
         let count = beyond.len();
-        let closed = view.some_closed(beyond, low, high);
+        let closed = walled(view, strips, row, between, beyond);
         let free = (0..count).find(|&n| closed.get(if side == 0 { count - 1 - n } else { n }));
         if let Some(free) = free {
             let by = free as f64 * view.cell;

@@ -37,6 +37,11 @@ impl Row {
         self.depth() < DEPTH.0
     }
 
+    /// True when it is a wall beside another, with the next hall behind it: that one is a row of racks, and it is not.
+    pub fn is_wall_beside(&self, other: &Self) -> bool {
+        self.is_shallow() && !other.is_shallow()
+    }
+
     /// Its direction and its places, as [`placed`] takes them.
     pub fn place(&self) -> (usize, [f64; 2], [f64; 2]) {
         (self.direction, self.along, self.across)

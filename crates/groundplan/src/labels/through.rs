@@ -226,23 +226,39 @@ impl<'a> Through<'a> {
         self.all = (0..self.all.len()).map(|direction| self.counts_of_all(direction)).collect();
     }
 
-    /// How likely it is that some rows are open at one place, by how much of each, and of all, is so elsewhere.
+    /// How likely it is that some rows are open at one place, by how much of each, and of all, is so elsewhere: of each
+    /// where not all others are open, for of several ways none speaks against another.
     fn chance(&self, rows: &[usize], ends: [f64; 2]) -> f64 {
         let width = ends[1] - ends[0];
         let [free, places] = self.all[self.rows[rows[0]].row.direction][(width / STEP) as usize];
-        let own = rows.len() as f64;
-        let common = ((free - own).max(0.0) + 0.5) / ((places - own).max(0.0) + 1.0);
-        let chance = |&n: &usize| {
-            let [free, places] = self.counts(n, width).map(|count| (count - 1.0).max(0.0));
-            common.max((free / places.max(1.0)).min(1.0))
+        let all = self.open_in_all(rows, width);
+        let others = rows.iter().map(|n| {
+            let others: Vec<usize> = rows.iter().copied().filter(|m| m != n).collect();
+            self.open_in_all(&others, width)
+        });
+        let others: Vec<f64> = others.collect();
+        let (own, left) = (rows.len() as f64 * all, others.iter().sum::<f64>());
+        let common = ((free - own).max(0.0) + 0.5) / ((places - left).max(0.0) + 1.0);
+        let chance = |(&n, others): (&usize, &f64)| {
+            let [free, places] = self.counts(n, width);
+            common.max(((free - all).max(0.0) / (places - others).max(1.0)).min(1.0))
         };
-        rows.iter().map(chance).product()
+        rows.iter().zip(&others).map(chance).product()
+    }
+
+    /// How many places as wide are open in each of some rows: one at least, which is being asked of.
+    fn open_in_all(&self, rows: &[usize], width: f64) -> f64 {
+        let first = rows.first().map(|&n| self.open[n].clone()).unwrap_or_default();
+        let common = rows.iter().skip(1).fold(first, |common, &n| {
+            let both = common.iter().flat_map(|&one| self.open[n].iter().map(move |&two| shared(one, two)));
+            both.filter(|[from, to]| from < to).collect()
+        });
+        as_wide(&common, width).max(1.0)
     }
 
     /// How many places as wide of a row are open, and how many it has.
     fn counts(&self, n: usize, width: f64) -> [f64; 2] {
-        let open = self.open[n].iter().map(|open| ((open[1] - open[0]) / (width - SLACK)).floor());
-        [open.sum(), self.rows[n].row.length() / width]
+        [as_wide(&self.open[n], width), self.rows[n].row.length() / width]
     }
 
     fn counts_of_all(&self, direction: usize) -> Vec<[f64; 2]> {
@@ -275,6 +291,11 @@ impl<'a> Through<'a> {
     }
 }
 
+/// How many places of a width there are in some stretches.
+fn as_wide(open: &[[f64; 2]], width: f64) -> f64 {
+    open.iter().map(|[from, to]| ((to - from) / (width - SLACK)).floor()).sum()
+}
+
 impl Seen<'_> {
     fn middle(&self) -> f64 {
         f64::midpoint(self.row.across[0], self.row.across[1])
@@ -304,12 +325,11 @@ impl Seen<'_> {
         (self.row.along[0]..=self.row.along[1]).contains(&self.along(across))
     }
 
-    /// True when a wall ends the row and the two corridors beside it.
+    /// True when a wall ends the row and the corridors beside it, but for what leads on through a gate.
     fn is_at_wall(&self, strips: &[Strip], side: usize) -> bool {
         let (view, end) = (self.views[0], self.row.along[side]);
         let beyond = if side == 0 { [end - NEAR, end] } else { [end, end + NEAR] };
-        let [below, above] = self.between.map(|n| strips[n].across);
-        view.some_closed(view.column(beyond[0])..view.column(beyond[1]) + 1, below[0], above[1]).any()
+        gates::walled(view, strips, self.row, self.between, view.column(beyond[0])..view.column(beyond[1]) + 1).any()
     }
 
     /// The corridors that run along it no further off than a row is deep.

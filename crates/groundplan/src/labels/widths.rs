@@ -138,7 +138,8 @@ impl Crossed {
                 return None;
             }
             let [s, u] = view.crossing(other, f64::midpoint(row.across[0], row.across[1]), strip.middle());
-            let [from, to] = wider(row.along, strip.width());
+            // Past a row's end it leads where one of its sides does: further off the next hall may lie.
+            let [from, to] = wider(row.along, strip.width() / 2.0);
             (from..=to).contains(&u).then_some(s)
         };
         let crosses = |n: usize, s: f64| (strips[n].along[0]..=strips[n].along[1]).contains(&s);
@@ -161,7 +162,9 @@ impl Crossed {
             let middle = |n: usize| strips[aisles[n]].middle();
             let led = |&m: &usize| middle(rows[m].1[1]) - middle(rows[m].1[0]);
             let rest = own.iter().map(led).fold(strips[n].length(), |rest, led| rest - led);
-            let next = || own.iter().flat_map(|&m| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]));
+            let is_wall = |m: &usize| own.iter().any(|&n| rows[*m].0.is_wall_beside(&rows[n].0));
+            let beside = |m: usize| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]);
+            let next = || own.iter().flat_map(|&m| beside(m)).filter(|m| !is_wall(m));
             let goes_on = next().any(|&m| place(n, &rows[m].0, rows[m].1).is_some_and(|s| !crosses(n, s)));
             let is_in_line = |&other: &usize| other != n && overlap(strips[n].across, strips[other].across) > 0.0;
             let is_led_on = next().any(|&m| through[m].iter().any(is_in_line));

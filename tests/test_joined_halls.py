@@ -1,0 +1,79 @@
+"""Ways across the rows of halls that a wall parts and a gate joins: what lies behind the wall is none of their rows."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import groundplan
+
+Picture = npt.NDArray[np.uint8]
+Box = tuple[float, float, float, float]  # from x, from y, to x, to y
+
+RESOLUTION = 0.05
+
+
+def site(floors: list[Box], racks: list[Box]) -> Picture:
+    """Floors with walls around what they cover together, metres, and what stands on them; the unknown around."""
+    right, top = (max(box[n] for box in floors) for n in (2, 3))
+    picture = np.full((round(top / RESOLUTION) + 40, round(right / RESOLUTION) + 40), 205, np.uint8)
+    walls = [(left - 0.1, low - 0.1, to + 0.1, high + 0.1) for left, low, to, high in floors]
+    for boxes, grey in ((walls, 0), (floors, 254), (racks, 0)):
+        for box in boxes:
+            left, low, to, high = (round(metres / RESOLUTION) + 20 for metres in box)
+            picture[low:high, left:to] = grey
+    return picture
+
+
+def rows(lows: list[float], pieces: list[tuple[float, float]], depth: float = 2) -> list[Box]:
+    """Racks from place to place along each of some rows."""
+    return [(left, low, right, low + depth) for low in lows for left, right in pieces]
+
+
+def found(picture: Picture) -> tuple[list[str], list[float]]:
+    """The types of all junctions, and how wide the ways across the rows are."""
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    across = [way for way in survey.of_kind("corridor") if abs(np.subtract(*way["axis"])[0]) < 1]
+    return sorted(junction["type"] for junction in survey.of_kind("junction")), sorted(way["width"] for way in across)
+
+
+def test_ways_across_rows_end_at_the_wall_between_two_halls() -> None:
+    # Aisles of 3 m along both sides of a wall of 0.4 m, and a gate in it where the first ways of both halls are one.
+    floors: list[Box] = [(0, 0, 40, 13), (0, 13.4, 40, 26.4), (0, 12, 4, 14)]
+    below = rows([3, 8], [(4, 20), (22.7, 35)])
+    above = rows([16.4, 21.4], [(4, 24), (27.2, 37)])
+    junctions, widths = found(site(floors, [*below, *above]))
+    assert junctions == ["L"] * 6 + ["T"] * 10 + ["X"] * 2
+    assert widths == pytest.approx([2.7, 3.0, 3.2, 4.0, 5.0], abs=0.3)
+
+
+def test_ways_lead_past_rows_on_both_sides_of_a_gate() -> None:
+    # An aisle of the one hall leads through the gate and is one of the other's.
+    floors: list[Box] = [(0, 0, 20, 8), (20.2, 4.5, 50, 18), (19, 5, 22, 8)]
+    left, right = rows([3], [(3, 17)]), rows([8, 13], [(23.2, 46)])
+    junctions, widths = found(site(floors, [*left, *right]))
+    assert junctions == ["L"] * 6 + ["T"] * 4
+    assert widths == pytest.approx([3.0, 3.0, 3.0, 4.0], abs=0.25)
+
+
+def test_a_way_leads_past_a_row_at_a_wall_with_a_gate() -> None:
+    floors: list[Box] = [(0, 0, 10, 3), (10.2, 0, 40, 8), (9, 0, 11, 3)]
+    junctions, widths = found(site(floors, rows([3], [(13.2, 37)])))
+    assert junctions == ["L"] * 3 + ["T", "end"]
+    assert widths == pytest.approx([3.0, 3.0], abs=0.25)
+
+
+def test_two_ways_as_wide_as_bays_lead_through_two_full_rows() -> None:
+    # Bays of 3 m between posts, goods in all of them but for two ways.
+    racks: list[Box] = []
+    for low in (3.0, 8.4):
+        for n in range(28):
+            left = 5 + 3 * n
+            racks += [(left - 0.05, low + at, left + 0.05, low + at + 0.1) for at in (0, 0.9, 1.3, 2.3)]
+            for place in range(0 if n in (9, 18, 27) else 3):
+                start = left + 0.1 + 0.95 * place
+                racks += [(start, low + at, start + 0.85, low + at + 1) for at in (0.05, 1.35)]
+    junctions, widths = found(site([(0, 0, 91, 13.8)], racks))
+    assert junctions == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
+    assert widths == pytest.approx([2.9, 2.9, 5.0, 5.0], abs=0.3)
