@@ -186,3 +186,11 @@ def test_posts_end_a_row_where_no_bay_fits_between_them_and_the_wall() -> None:
     picture = hall(2 * first + 12 * bay, 7, goods + posts)
     assert labels(picture, "junction", "type") == ["L"] * 4
     assert labels(picture, "corridor", "width") == pytest.approx([2.5] * 2 + [first] * 2, abs=0.25)
+
+
+@pytest.mark.parametrize("place", [0.8, 1.2, 1.6])
+def test_no_way_leads_between_two_racks_through_a_wall_that_joins_them(place: float) -> None:
+    racks: Boxes = [(3.5, 2.8, 12, 5.2), (14.5, 2.8, 23, 5.2), (12, 2.8 + place, 14.5, 2.9 + place)]
+    picture = hall(26.5, 8, racks)
+    assert labels(picture, "junction", "type") == ["L"] * 4
+    assert labels(picture, "corridor", "width") == pytest.approx([2.8, 2.8, 3.5, 3.5], abs=0.25)

@@ -9,6 +9,7 @@ use super::racks::Row;
 use super::runs::runs;
 use super::shares::Shares;
 use super::turned::Turned;
+use crate::ends::wider;
 use crate::grid::Frame;
 
 /// A way is so wide, metres.
@@ -102,12 +103,7 @@ impl<'a> Columns<'a> {
     /// half empty it may be a way or a bay.
     pub fn between_racks(&self) -> Vec<[f64; 2]> {
         let is_rack = |n: usize| self.closing(n) != Closing::Open;
-        self.gaps(|from, to| {
-            // A room has walls where a row has its faces.
-            let stands = |face: usize| self.faces[from..to].iter().filter(|faces| faces[face]).count();
-            let is_room = [0, 1].iter().any(|&face| stands(face) as f64 > TAKEN * (to - from) as f64);
-            !is_room && self.is_free_way(from, to, self.view.cell) && is_rack(from) && is_rack(to)
-        })
+        self.gaps(|from, to| self.is_free_way(from, to, self.view.cell) && is_rack(from) && is_rack(to))
     }
 
     /// What lies between two uprights, in order: its own ends are none that a way could lie between.
@@ -232,7 +228,17 @@ impl<'a> Columns<'a> {
     /// True when what lies between two columns is free, and with what lies between cells as wide as a way.
     fn is_free_way(&self, from: usize, to: usize, between_cells: f64) -> bool {
         let width = self.place(to) - self.place(from);
-        (WIDTH.0..=WIDTH.1).contains(&(width + between_cells)) && self.share(from, to) <= CLUTTER
+        (WIDTH.0..=WIDTH.1).contains(&(width + between_cells))
+            && self.share(from, to) <= CLUTTER
+            && !self.is_walled(from, to)
+    }
+
+    /// True when something stands in most of the columns between two, be it ever so little: a wall joins what is beside them.
+    fn is_walled(&self, from: usize, to: usize) -> bool {
+        let columns = self.view.column(self.place(from))..self.view.column(self.place(to));
+        let [low, high] = wider(self.row.across, FACE);
+        let stands = self.view.some_occupied(columns, low, high);
+        stands.iter().filter(|share| **share > 0.0).count() as f64 > TAKEN * stands.len() as f64
     }
 
     fn is_way(&self, from: usize, to: usize) -> bool {
