@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from _maps import EXPECTED, Pixels, hall
-from _reading import states
+from _reading import EXPECTED, Pixels, hall, states
 
 import groundplan
 from groundplan._errors import MapError

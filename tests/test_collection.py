@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from _maps import codes, shares
+from _reading import codes, shares
 
 from groundplan.maps import read
 

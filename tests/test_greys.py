@@ -6,8 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from _maps import EXPECTED, codes, hall, message, shares, with_greys, write_pgm, write_yaml
-from _reading import states
+from _reading import EXPECTED, codes, hall, message, shares, states, with_greys, write_pgm, write_yaml
 
 from groundplan.maps import FREE, OCCUPIED, Map, from_array, read
 

@@ -10,8 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from _maps import EXPECTED, Pixels, codes, hall, message, with_greys, write_pgm, write_yaml
-from _reading import refused, states
+from _reading import EXPECTED, Pixels, codes, hall, message, refused, states, with_greys, write_pgm, write_yaml
 from PIL import Image
 
 from groundplan._errors import MapError

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from _maps import EXPECTED, codes, hall, message, write_pgm, write_yaml
-from _reading import refused, states
+from _reading import EXPECTED, codes, hall, message, refused, states, write_pgm, write_yaml
 
 from groundplan.maps import FREE, OCCUPIED, read
 

@@ -2,7 +2,7 @@
 
 use super::Evidence;
 use super::beside::{Beside, placed};
-use super::corridors::{self, Strip, UNTOLD};
+use super::corridors::{self, Strip};
 use super::look::Look;
 use super::racks::Row;
 use super::sections::{Columns, WIDTH};
@@ -11,7 +11,7 @@ use super::turned::Turned;
 use super::widths::Widths;
 use crate::bands::flat_map_each;
 use crate::bits::Bits;
-use crate::ends::{around, overlap, sorted, wider};
+use crate::ends::{around, overlap, wider};
 use std::ops::Range;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
@@ -124,25 +124,6 @@ pub fn leading_across([view, other]: [&Turned; 2], placed: &[Beside], row: &Row,
 pub fn crossing(views: &[Turned], direction: usize) -> Option<&Turned> {
     let sine = |view: &&Turned| libm::sin(view.angle - views[direction].angle).abs();
     views.iter().max_by(|a, b| sine(a).total_cmp(&sine(b))).filter(|view| sine(view) > 0.5)
-}
-
-/// A way as a strip of the crossing direction, from the middle of one corridor to that of the other.
-pub fn strip(view: &Turned, other: &Turned, row: &Row, [from, to]: [f64; 2], middles: [f64; 2]) -> Strip {
-    let sin = libm::sin(other.angle - view.angle);
-    let v = f64::midpoint(row.across[0], row.across[1]);
-    let [s, t] = other.place(view.to_map([f64::midpoint(from, to), v]));
-    let width = (to - from) * sin.abs();
-    let ends = middles.map(|middle| s + (middle - v) / sin);
-    Strip {
-        direction: other.direction,
-        along: sorted(ends),
-        across: [t - width / 2.0, t + width / 2.0],
-        score: row.across[1] - row.across[0],
-        bays: false,
-        is_ragged: false,
-        unseen: [false; 2],
-        held: UNTOLD,
-    }
 }
 
 /// Gates that follow one another through neighbouring rows are one way.

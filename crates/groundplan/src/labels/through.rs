@@ -4,7 +4,7 @@
 //! free at one place is told by how much of all of them is free elsewhere.
 
 use super::beside::Beside;
-use super::corridors::Strip;
+use super::corridors::{Strip, UNTOLD};
 use super::gates;
 use super::racks::{DEPTH, Row};
 use super::sections::{Columns, WIDTH};
@@ -120,7 +120,10 @@ impl<'a> Through<'a> {
                 }
             }
             if ways.len() == known {
-                return ways.iter().flat_map(|way| way.rows.iter().map(|&n| self.rows[n].strip(way.ends))).collect();
+                return ways
+                    .iter()
+                    .flat_map(|way| way.rows.iter().map(|&n| self.rows[n].way(self.rows[n].stretch(way.ends))))
+                    .collect();
             }
             for way in &ways[known..] {
                 widths[self.rows[way.rows[0]].views[1].direction].add(way.width() + BETWEEN_CELLS);
@@ -139,9 +142,7 @@ impl<'a> Through<'a> {
     pub fn at_walls(&self, strips: &[Strip], placed: &[Beside]) -> Vec<(Strip, bool)> {
         let at_wall = |seen: &Seen, side: usize| {
             let (ends, is_doubtful) = seen.columns.way_at_end(side)?;
-            let [view, other] = seen.views;
-            let way = || gates::strip(view, other, seen.row, ends, seen.middles);
-            seen.is_at_wall(strips, side).then(|| (way(), seen.is_bounded(strips, ends), is_doubtful))
+            seen.is_at_wall(strips, side).then(|| (seen.way(ends), seen.is_bounded(strips, ends), is_doubtful))
         };
         let mut found = Vec::new();
         for side in [0, 1] {
@@ -314,10 +315,14 @@ impl Seen<'_> {
         view.crossing(other, self.middle(), across)[1]
     }
 
+    /// From where to where along it something crosses it.
+    fn stretch(&self, across: [f64; 2]) -> [f64; 2] {
+        sorted(across.map(|end| self.along(end)))
+    }
+
     /// True when a stretch is as wide as a bay, or as some beside one another.
     fn is_as_bays(&self, ends: [f64; 2]) -> bool {
-        let [one, two] = ends.map(|end| self.along(end));
-        self.columns.is_as_bays(sorted([one, two]))
+        self.columns.is_as_bays(self.stretch(ends))
     }
 
     /// True when what lies there across the crossing direction crosses it.
@@ -359,16 +364,29 @@ impl Seen<'_> {
     }
 
     /// A way through it, from where to where along, that lies between its own ends.
-    pub fn gate(&self, way: [f64; 2]) -> Option<Strip> {
-        let [view, other] = self.views;
-        let is_within = self.own[0] < way[0] && way[1] < self.own[1];
-        is_within.then(|| gates::strip(view, other, self.row, way, self.middles))
+    pub fn gate(&self, ends: [f64; 2]) -> Option<Strip> {
+        let is_within = self.own[0] < ends[0] && ends[1] < self.own[1];
+        is_within.then(|| self.way(ends))
     }
 
-    /// A way through it.
-    fn strip(&self, ends: [f64; 2]) -> Strip {
+    /// A way through it, from where to where along, as a strip of the direction that crosses it, from the middle of one
+    /// corridor to that of the other.
+    fn way(&self, [from, to]: [f64; 2]) -> Strip {
         let [view, other] = self.views;
-        let [from, to] = ends.map(|end| self.along(end));
-        gates::strip(view, other, self.row, sorted([from, to]), self.middles)
+        let sin = libm::sin(other.angle - view.angle);
+        let v = self.middle();
+        let [s, t] = other.place(view.to_map([f64::midpoint(from, to), v]));
+        let width = (to - from) * sin.abs();
+        let ends = self.middles.map(|middle| s + (middle - v) / sin);
+        Strip {
+            direction: other.direction,
+            along: sorted(ends),
+            across: [t - width / 2.0, t + width / 2.0],
+            score: self.row.depth(),
+            bays: false,
+            is_ragged: false,
+            unseen: [false; 2],
+            held: UNTOLD,
+        }
     }
 }
