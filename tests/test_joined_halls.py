@@ -77,3 +77,15 @@ def test_two_ways_as_wide_as_bays_lead_through_two_full_rows() -> None:
     junctions, widths = found(site([(0, 0, 91, 13.8)], racks))
     assert junctions == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
     assert widths == pytest.approx([2.9, 2.9, 5.0, 5.0], abs=0.3)
+
+
+@pytest.mark.parametrize("apart", [1.2, 2.5])
+def test_ways_lead_past_rows_on_both_sides_of_what_nobody_saw_between_two_halls(apart: float) -> None:
+    # A way leads from hall to hall through the middle of all rows; the upper hall is shorter than the lower one.
+    high = 12 + apart
+    floors: list[Box] = [(0, 0, 40, 12), (6, high, 34, high + 13), (18.5, 11, 21.5, high + 1)]
+    below = rows([3, 7], [(3.5, 18.5), (21.5, 36.5)])
+    above = rows([high + 3.2, high + 7.8], [(8.4, 18.5), (21.5, 31.6)], 1.6)
+    junctions, widths = found(site(floors, [*below, *above]))
+    assert junctions == ["L"] * 8 + ["T"] * 6 + ["X"] * 4
+    assert widths == pytest.approx([2.4, 2.4, 3.0, 3.5, 3.5], abs=0.3)

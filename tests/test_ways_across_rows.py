@@ -83,3 +83,25 @@ def test_a_gap_as_wide_as_the_ways_of_the_place_is_a_way_though_it_leads_through
     survey = groundplan.survey(picture, resolution=RESOLUTION)
     across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
     assert across == pytest.approx([3.6] * 3, abs=0.15)
+
+
+@pytest.mark.parametrize("at", [4.0, 9.0, 15.6])
+def test_a_gap_as_wide_as_a_pallet_is_no_way_between_aisles_for_trucks(at: float) -> None:
+    # One row of 24 m by 2.4 m with aisles of 3 m on both sides, 3 m from the walls at its ends.
+    picture = hall(600, 168)
+    picture[80:128, 80:560] = 0
+    left = 80 + round(at / RESOLUTION)
+    picture[80:128, left : left + 24] = 254
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    assert sorted(way["width"] for way in survey.of_kind("corridor")) == pytest.approx([3.0] * 4, abs=0.15)
+    assert [junction["type"] for junction in survey.of_kind("junction")] == ["L"] * 4
+
+
+def test_aisles_as_narrow_lead_between_racks_side_by_side() -> None:
+    # Racks of 2.4 m by 8 m, 1.2 m apart, with ways of 3 m before their ends and of 2.4 m at the walls beside them.
+    picture = hall(720, 280)
+    for n in range(9):
+        picture[80:240, 20 + 48 + n * 72 : 20 + 96 + n * 72] = 0
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    narrow = [way for way in survey.of_kind("corridor") if way["width"] < 2]
+    assert len(narrow) == 8

@@ -129,6 +129,11 @@ impl Beyond {
     }
 }
 
+/// True when others that are alike run beside a strip, with racks between them; of all it is known where they lie.
+pub fn is_one_of_many(strips: &[Strip], placed: &[Beside], n: usize) -> bool {
+    alike(strips, placed, n, Beyond::Rack, |_| true) >= OTHERS
+}
+
 /// How many others that are alike run beside a strip, one after another, of those that count and lie no farther off than
 /// [`OTHERS`] of them take.
 fn alike(strips: &[Strip], placed: &[Beside], n: usize, beyond: Beyond, counts: impl Fn(usize) -> bool) -> usize {

@@ -3,7 +3,9 @@
 
 use super::Evidence;
 use super::beside::{Beside, placed};
+use super::connected;
 use super::corridors::{self, Strip};
+use super::family;
 use super::gates::{crossing, leading_across};
 use super::look::Look;
 use super::racks::{self, Row};
@@ -24,6 +26,8 @@ const EXPECTED: (f64, f64) = (0.05, 0.005);
 const LONGER: f64 = 4.0;
 /// Uprights leave so much of a strip that goes on between them.
 const LEFT: f64 = 0.5;
+/// A way through a row is no narrower than gates are, or than this share of the aisles beside it.
+const NARROWER: f64 = family::LED_TO;
 /// What goes on so far beyond the rows, metres, is a way there.
 const BEYOND: f64 = 2.0;
 
@@ -126,7 +130,7 @@ fn crossed(
     let common = views.iter().find_map(|view| view.pitch);
     let placed = placed(views, strips.iter().map(Strip::place));
     let widest = corridors::widest(strips);
-    for view in views.iter().filter(|_| common.is_some()) {
+    for view in views {
         let Some(other) = crossing(views, view.direction) else { continue };
         // The rows as they were if nothing led across them.
         let is_aisle = |n: &usize| {
@@ -149,20 +153,36 @@ fn crossed(
             if let Some(before) = known.get(&place(row)).filter(is_as_before) {
                 return before.strips.clone();
             }
-            let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, view.pitch.or(common));
-            let (ways, open) = (columns.ways(), columns.open());
             let aisles = between.map(|n| &strips[n]);
             // Then the rows might as well be what lies between two ways across the rows.
             let shorter = aisles.iter().map(|aisle| aisle.length()).fold(f64::INFINITY, f64::min);
             let times = if view.pitch.is_some() { LONGER } else { 1.0 };
             let judged = near.into_iter().filter(|&n| strips[n].length() < times * shorter);
-            let cross = |n: usize| cross([view, other], row, (&columns, &ways, &open), &strips[n], aisles);
-            judged.filter_map(|n| cross(n).map(|crossed| (n, crossed))).collect()
+            // Where no bays are known, what is wider is no bay.
+            let is_narrow = |n: usize| is_narrow(strips, &placed, n, aisles);
+            let judged: Vec<usize> = judged.filter(|&n| common.is_some() || is_narrow(n)).collect();
+            if judged.is_empty() {
+                return Vec::new();
+            }
+            let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, view.pitch.or(common));
+            let (ways, open) = (columns.ways(), columns.open());
+            let cross = |n: usize| {
+                let found = cross([view, other], row, (&columns, &ways, &open), &strips[n], aisles)?;
+                Some(if is_narrow(n) { found.closed() } else { found })
+            };
+            judged.into_iter().filter_map(|n| cross(n).map(|crossed| (n, crossed))).collect()
         };
         let found = flat_map_each(rows.len(), evidence.threads, |n| [crossing(&rows[n])]);
         crossed.extend(rows.into_iter().zip(found).map(|(row, strips)| Across { row, strips }));
     }
     crossed
+}
+
+/// True when a strip is too narrow for a way through a row between two aisles, and none of several alike side by side: a
+/// pallet's place is empty there. Of all it is known where they lie.
+fn is_narrow(strips: &[Strip], placed: &[Beside], n: usize, aisles: [&Strip; 2]) -> bool {
+    let least = aisles.map(|aisle| NARROWER * aisle.width()).into_iter().fold(WIDTH.0, f64::min);
+    strips[n].width() < least && !connected::is_one_of_many(strips, placed, n)
 }
 
 /// A row that a strip leads across: in the strip's own places, and whether there is a way.
@@ -182,6 +202,13 @@ struct Crossed {
     free: Option<Free>,
     /// From where to where nothing stands in the row within the strip, across.
     between: Vec<[f64; 2]>,
+}
+
+impl Crossed {
+    /// Of a strip that is too narrow for a way: past the row's end one may lead still.
+    fn closed(self) -> Self {
+        if self.at_end { self } else { Self { way: false, open: false, free: None, ..self } }
+    }
 }
 
 /// What a strip finds where it crosses a row; nothing where it ends before.

@@ -37,7 +37,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
             found.extend(row.gate(way));
         }
     }
-    let through = Through::new(seen, views.len());
+    let through = Through::new(views, seen);
     for (gate, is_doubtful) in through.at_walls(strips, &placed) {
         if is_doubtful { &mut doubtful } else { &mut gates }.push(gate);
     }

@@ -9,6 +9,7 @@ use super::gates;
 use super::racks::{DEPTH, Row};
 use super::sections::{Columns, WIDTH};
 use super::turned::Turned;
+use super::whole;
 use super::widths::Widths;
 use crate::ends::{overlap, shared, sorted, wider};
 use std::collections::{BTreeMap, BTreeSet};
@@ -75,12 +76,14 @@ pub struct Through<'a> {
     /// For each row those above it and below it, with which it shares a corridor.
     above: Vec<Vec<usize>>,
     below: Vec<Vec<usize>>,
+    /// Which of the rows are walls between halls.
+    walls: Vec<bool>,
     /// For each direction and each width in steps, how many places of its rows are open, and of how many.
     all: Vec<Vec<[f64; 2]>>,
 }
 
 impl<'a> Through<'a> {
-    pub fn new(rows: Vec<Seen<'a>>, directions: usize) -> Self {
+    pub fn new(views: &[Turned], rows: Vec<Seen<'a>>) -> Self {
         let open: Vec<_> = rows.iter().map(Seen::open).collect();
         // A corridor is of one direction, and so are the rows beside it.
         let mut beside: BTreeMap<usize, [Vec<usize>; 2]> = BTreeMap::new();
@@ -90,7 +93,8 @@ impl<'a> Through<'a> {
         }
         let next = |side: usize| rows.iter().map(|row| beside[&row.between[side]][side].clone()).collect();
         let (below, above) = (next(0), next(1));
-        let mut made = Self { rows, open, above, below, all: vec![Vec::new(); directions] };
+        let walls = whole::are_between_halls(views, &rows.iter().map(|seen| seen.row).collect::<Vec<_>>());
+        let mut made = Self { rows, open, above, below, walls, all: vec![Vec::new(); views.len()] };
         made.count();
         made
     }
@@ -181,14 +185,16 @@ impl<'a> Through<'a> {
         let (mut found, mut next) = (BTreeSet::from([row]), vec![row]);
         while let Some(n) = next.pop() {
             let beside = self.above[n].iter().chain(&self.below[n]).copied();
-            next.extend(beside.filter(|&m| self.rows[m].holds(place) && found.insert(m)));
+            next.extend(beside.filter(|&m| !self.walls[m] && self.rows[m].holds(place) && found.insert(m)));
         }
         found
     }
 
-    /// True when no corridor runs beside some rows but those between which they are known, no further off than a row is deep.
+    /// True when no corridor runs beside some rows but those between which they are known, no further off than a row is deep,
+    /// and those behind a wall.
     fn are_all(&self, rows: &BTreeSet<usize>, strips: &[Strip], placed: &[Beside]) -> bool {
-        let known: BTreeSet<usize> = rows.iter().flat_map(|&n| self.rows[n].between).collect();
+        let walls = rows.iter().flat_map(|&n| self.above[n].iter().chain(&self.below[n])).filter(|&&m| self.walls[m]);
+        let known: BTreeSet<usize> = rows.iter().chain(walls).flat_map(|&n| self.rows[n].between).collect();
         rows.iter().all(|&n| self.rows[n].corridors_beside(strips, placed).iter().all(|strip| known.contains(strip)))
     }
 

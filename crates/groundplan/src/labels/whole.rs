@@ -88,19 +88,36 @@ fn of_a_kind(rows: &[Row]) -> Vec<Row> {
     rows.iter().filter(has_kin).cloned().collect()
 }
 
-/// Rows without those that are walls for all that is seen: no deeper than these, or closed all along and nothing known
-/// between, and none of the kind across an aisle.
+/// Rows without those that are walls for all that is seen, and none of the kind across an aisle.
 fn without_walls(views: &[Turned], rows: &[Row]) -> Vec<Row> {
-    let is_as_walls = |row: &Row| row.is_shallow() || is_shell(&views[row.direction], row);
-    let (walls, others): (Vec<_>, Vec<_>) = rows.iter().zip(0..).partition(|(row, _)| is_as_walls(row));
-    let placed = placed(views, walls.iter().map(|(row, _)| row.place()));
-    let has_kin = |(row, _): &(&Row, usize)| {
-        let mut near = standing_near(&placed, row).into_iter().map(|n| walls[n].0);
+    let (walls, others): (Vec<_>, Vec<_>) = rows.iter().zip(0..).partition(|(row, _)| is_as_walls(views, row));
+    let alone: Vec<&Row> = walls.iter().map(|(row, _)| *row).collect();
+    let kin = have_kin(views, &alone, &alone);
+    let of_a_kind = walls.into_iter().zip(kin).filter(|(_, has_kin)| *has_kin).map(|(wall, _)| wall);
+    let mut kept: Vec<_> = of_a_kind.chain(others).collect();
+    kept.sort_by_key(|(_, n): &(&Row, usize)| *n);
+    kept.into_iter().map(|(row, _)| row.clone()).collect()
+}
+
+/// Which rows are the unknown between two halls: walls for all that is seen, and none as deep across an aisle.
+pub fn are_between_halls(views: &[Turned], rows: &[&Row]) -> Vec<bool> {
+    let kin = have_kin(views, rows, rows);
+    rows.iter().zip(kin).map(|(row, has_kin)| !has_kin && is_as_walls(views, row)).collect()
+}
+
+/// Which rows have one as deep across an aisle, of some.
+fn have_kin(views: &[Turned], rows: &[&Row], others: &[&Row]) -> Vec<bool> {
+    let placed = placed(views, others.iter().map(|row| row.place()));
+    let has_kin = |row: &Row| {
+        let mut near = standing_near(&placed, row).into_iter().map(|n| others[n]);
         near.any(|other| beside(row, other) && are_alike(row, other))
     };
-    let mut kept: Vec<_> = walls.iter().copied().filter(has_kin).chain(others).collect();
-    kept.sort_by_key(|(_, n)| *n);
-    kept.into_iter().map(|(row, _)| row.clone()).collect()
+    rows.iter().map(|row| has_kin(row)).collect()
+}
+
+/// True when a row is no deeper than walls are, or closed all along and nothing known between.
+fn is_as_walls(views: &[Turned], row: &Row) -> bool {
+    row.is_shallow() || is_shell(&views[row.direction], row)
 }
 
 fn is_shell(view: &Turned, row: &Row) -> bool {

@@ -5,7 +5,9 @@ use super::corridors::{self, Strip};
 use super::gates::{crossing, leading_across};
 use super::racks::{self, Row};
 use super::turned::Turned;
+use super::whole;
 use crate::ends::{overlap, sorted, wider};
+use std::collections::BTreeMap;
 
 /// Ways across a place are of one width but for this share.
 const ALIKE: f64 = 0.15;
@@ -56,10 +58,12 @@ impl Widths {
 pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
     let mut stays = vec![true; strips.len()];
-    let places: Vec<Place> = views.iter().map(|view| Place::new(views, &strips, &placed, view.direction)).collect();
+    let walls = between_halls(views, &strips);
+    let places: Vec<Place> =
+        views.iter().map(|view| Place::new(views, &strips, &placed, &walls, view.direction)).collect();
     // How long the longest row is that each runs along.
     let mut along = vec![0.0_f64; strips.len()];
-    for Place { aisles, rows } in &places {
+    for Place { aisles, rows, .. } in &places {
         for (row, n) in rows.iter().flat_map(|(row, between)| between.map(|n| (row, aisles[n]))) {
             along[n] = along[n].max(row.length());
         }
@@ -90,20 +94,43 @@ fn is_at_wall(view: &Turned, strip: &Strip) -> bool {
     })
 }
 
+/// Between which strips there is nothing but walls between halls, where no other crosses them.
+fn between_halls(views: &[Turned], strips: &[Strip]) -> BTreeMap<[usize; 2], bool> {
+    let extents: Vec<[f64; 2]> = strips.iter().map(|strip| strip.along).collect();
+    let rows = racks::between(views, strips, &extents);
+    let are_walls = whole::are_between_halls(views, &rows.iter().collect::<Vec<_>>());
+    let mut halls = BTreeMap::new();
+    for (row, is_wall) in rows.iter().zip(are_walls) {
+        row.between.into_iter().for_each(|between| *halls.entry(between).or_insert(true) &= is_wall);
+    }
+    halls
+}
+
 /// The aisles along a direction, and the rows between them, each with the two beside it.
 struct Place {
     aisles: Vec<usize>,
     rows: Vec<(Row, [usize; 2])>,
+    /// Which of the rows are walls between halls.
+    walls: Vec<bool>,
 }
 
 impl Place {
-    fn new(views: &[Turned], strips: &[Strip], placed: &[Beside], direction: usize) -> Self {
+    fn new(
+        views: &[Turned],
+        strips: &[Strip],
+        placed: &[Beside],
+        halls: &BTreeMap<[usize; 2], bool>,
+        direction: usize,
+    ) -> Self {
         let is_aisle = |n: &usize| strips[*n].direction == direction && !racks::is_within_row(strips, placed, *n);
         let aisles: Vec<usize> = (0..strips.len()).filter(is_aisle).collect();
         let own: Vec<Strip> = aisles.iter().map(|&n| strips[n].clone()).collect();
         let extents: Vec<[f64; 2]> = own.iter().map(|strip| strip.along).collect();
         let rows = racks::between(views, &own, &extents).into_iter();
-        Self { aisles, rows: rows.filter_map(|row| row.between.map(|between| (row, between))).collect() }
+        let rows: Vec<_> = rows.filter_map(|row| row.between.map(|between| (row, between))).collect();
+        let is_wall = |between: [usize; 2]| halls.get(&between.map(|n| aisles[n])).is_some_and(|is_wall| *is_wall);
+        let walls = rows.iter().map(|(_, between)| is_wall(*between)).collect();
+        Self { aisles, rows, walls }
     }
 }
 
@@ -125,7 +152,7 @@ impl Crossed {
         [view, other]: [&Turned; 2],
         strips: &[Strip],
         placed: &[Beside],
-        Place { aisles, rows }: &Place,
+        Place { aisles, rows, walls }: &Place,
         along: &[f64],
     ) -> Vec<Self> {
         let widest = corridors::widest(strips);
@@ -162,7 +189,7 @@ impl Crossed {
             let middle = |n: usize| strips[aisles[n]].middle();
             let led = |&m: &usize| middle(rows[m].1[1]) - middle(rows[m].1[0]);
             let rest = own.iter().map(led).fold(strips[n].length(), |rest, led| rest - led);
-            let is_wall = |m: &usize| own.iter().any(|&n| rows[*m].0.is_wall_beside(&rows[n].0));
+            let is_wall = |m: &usize| walls[*m] || own.iter().any(|&n| rows[*m].0.is_wall_beside(&rows[n].0));
             let beside = |m: usize| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]);
             let next = || own.iter().flat_map(|&m| beside(m)).filter(|m| !is_wall(m));
             let goes_on = next().any(|&m| place(n, &rows[m].0, rows[m].1).is_some_and(|s| !crosses(n, s)));
