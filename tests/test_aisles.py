@@ -319,3 +319,17 @@ def test_real_sites_have_the_aisles_that_a_person_counts(name: str, aisles: int,
     survey = groundplan.survey(groundplan.read(shared / "maps" / f"{name}.yaml"))
     assert len(survey.of_kind("corridor")) == aisles
     assert len(survey.of_kind("rack")) == racks
+
+
+def test_aisles_lead_between_racks_of_which_no_more_than_posts_and_the_unknown_shows() -> None:
+    # Three racks of 42 m by 2.2 m with aisles of 3 m beside them; floor shows to 0.1 m behind their posts, 3 m apart.
+    picture = np.full((374, 1040), 205, np.uint8)
+    picture[18:356, 18:1022] = 0
+    picture[20:354, 20:1020] = 254
+    for low in (78, 178, 278):
+        picture[low + 3 : low + 41, 103:937] = 205
+        for x in range(100, 941, 60):
+            for face in (low, low + 41):
+                picture[face : face + 3, x - 1 : x + 2] = 0
+    junctions = groundplan.survey(picture, resolution=RESOLUTION).of_kind("junction")
+    assert sorted(junction["type"] for junction in junctions) == ["L"] * 4 + ["T"] * 4

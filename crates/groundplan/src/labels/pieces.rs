@@ -7,6 +7,7 @@ use super::family::Family;
 use super::runs::{best_pieces, runs};
 use super::turned::{BARRED, IMPASSABLE};
 use crate::bits::WORD;
+use crate::ends::sorted;
 use std::ops::Range;
 
 /// Lines this near to a strip's side belong to it, metres.
@@ -124,7 +125,10 @@ impl Family<'_> {
         };
         let long =
             |(from, to): &(usize, usize)| (to - from) as f64 * view.cell >= self.parameters.labels_min_aspect * width;
-        let judged = |(from, to)| (strip((from, to)), self.is_corridor(&columns[from..to], width));
+        let judged = |(from, to)| {
+            let edged = || self.edged(first + from..first + to, across);
+            (strip((from, to)), self.is_corridor(&columns[from..to], width, edged))
+        };
         pieces.filter(long).map(judged).collect()
     }
 
@@ -174,8 +178,21 @@ impl Family<'_> {
         !(length >= VERY_LONG * width || long || closed || wall)
     }
 
-    /// Walled enough, and by more than posts.
-    fn is_corridor(&self, columns: &[Column], width: f64) -> bool {
+    /// At which of some columns, on either side of a strip, the ground is free up to it and taken from there on: of racks
+    /// whose inside nobody saw no more may show between their posts.
+    fn edged(&self, columns: Range<usize>, [low, high]: [f64; 2]) -> [Vec<bool>; 2] {
+        let taken = |[low, high]: [f64; 2], least: f64| {
+            self.view.blocked_where(columns.clone(), low, high, |share| share > least)
+        };
+        [(low, -1.0), (high, 1.0)].map(|(side, beyond)| {
+            let reach = |to: f64| sorted([BESIDE.0, BESIDE.1].map(|metres| side + to * metres));
+            let (before, beyond) = (taken(reach(-beyond), 1.0 - BEYOND), taken(reach(beyond), BEYOND));
+            (0..columns.len()).map(|n| beyond.get(n) && !before.get(n)).collect()
+        })
+    }
+
+    /// Walled enough, and by more than posts; with the columns at which the ground ends at a side.
+    fn is_corridor(&self, columns: &[Column], width: f64, edged: impl FnOnce() -> [Vec<bool>; 2]) -> bool {
         let Walled { near, once, twice, .. } = Walled::new(columns);
         let length = columns.len() as f64 * self.view.cell;
         // Posts alone are a side where racks stand, and elsewhere pillars.
@@ -184,7 +201,13 @@ impl Family<'_> {
             return false;
         }
         let structured = if length >= LONG * width {
-            once >= FACED_LONG * near
+            let sided = || {
+                let edged = edged();
+                let is_sided =
+                    |n: &usize| columns[*n].walled && (0..2).all(|side| edged[side][*n] || columns[*n].faces[side]);
+                (0..columns.len()).filter(is_sided).count() as f64
+            };
+            once >= FACED_LONG * near || (!self.is_wide_as_bays(width) && sided() >= FACED_LONG * near)
         } else {
             once >= FACED * near && (twice >= FACED_TWICE * near || once >= FACED_ONCE * near)
         };
