@@ -105,3 +105,23 @@ def test_aisles_as_narrow_lead_between_racks_side_by_side() -> None:
     survey = groundplan.survey(picture, resolution=RESOLUTION)
     narrow = [way for way in survey.of_kind("corridor") if way["width"] < 2]
     assert len(narrow) == 8
+
+
+def test_ways_staggered_from_row_to_row_need_not_be_as_wide_as_those_at_the_walls() -> None:
+    # Four rows of 16 bays of 3 m between posts, with goods in all of them, and in each row a way of 3.8 m at a place of
+    # its own; ways of 5 m and 6.2 m at the walls.
+    picture = hall(1260, 4 * 46 + 5 * 60)
+    for row, bays in enumerate((4, 11, 6, 13)):
+        low = 20 + 60 + row * 106
+        for start, count in ((0, bays), (60 * bays + 76, 16 - bays)):
+            for bay in range(count + 1):
+                x = 20 + 100 + start + 60 * bay
+                for face in (0, 18, 26, 44):
+                    picture[low + face : low + face + 2, x - 1 : x + 1] = 0
+                for at in () if bay == count else (3, 31):
+                    for goods in (1, 27):
+                        picture[low + goods : low + goods + 18, x + at : x + at + 26] = 0
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 14
+    across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
+    assert sorted(across) == pytest.approx([3.8] * 4 + [5.0, 6.2], abs=0.2)

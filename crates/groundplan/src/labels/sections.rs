@@ -255,9 +255,12 @@ impl<'a> Columns<'a> {
 
     /// True when a section is as wide as a bay, or as some beside one another.
     pub fn is_as_bays(&self, [from, to]: [f64; 2]) -> bool {
-        self.pitch.is_some_and(|pitch| {
-            let (width, count) = (to - from, ((to - from) / pitch).round());
-            width <= BAY * pitch || (count >= 2.0 && (width / pitch - count).abs() < WHOLE)
-        })
+        self.pitch.is_some_and(|pitch| is_as_bays(to - from, pitch))
     }
+}
+
+/// True when what is so wide is as wide as a bay, or as some beside one another.
+pub fn is_as_bays(width: f64, pitch: f64) -> bool {
+    let count = (width / pitch).round();
+    width <= BAY * pitch || (count >= 2.0 && (width / pitch - count).abs() < WHOLE)
 }

@@ -4,6 +4,7 @@ use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
 use super::gates::{crossing, leading_across};
 use super::racks::{self, Row};
+use super::sections::is_as_bays;
 use super::turned::Turned;
 use super::whole;
 use crate::ends::{overlap, sorted, wider};
@@ -54,7 +55,8 @@ impl Widths {
 }
 
 /// The strips without those that lead through some rows of a place and have no width of what leads through all: bays; nor
-/// those at a wall that the rows beside go on to.
+/// those at a wall that the rows beside go on to. Where nothing leads through all but past their ends, what has no bays'
+/// width is none.
 pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
     let mut stays = vec![true; strips.len()];
@@ -72,12 +74,16 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
         let Some(other) = crossing(views, view.direction) else { continue };
         let through = Crossed::of_each([view, other], &strips, &placed, place, &along);
         let whole = |n: &usize| through[*n].rows >= 2 && !through[*n].goes_on;
+        let is_told_within = (0..strips.len()).filter(whole).any(|n| through[n].is_within);
         let known = Widths((0..strips.len()).filter(whole).map(|n| strips[n].width()).collect());
         for (n, crossed) in through.iter().enumerate() {
             let is_some = crossed.rows > 0 && crossed.goes_on && crossed.rest <= REST && !known.is_empty();
             // Where the rows beside it go on to the wall, one that does not is empty there.
             let is_bay = || crossed.rows == 1 && !crossed.is_led_on && is_at_wall(other, &strips[n]);
-            stays[n] &= !is_some || (known.have(strips[n].width(), view.pitch) && !is_bay());
+            let width = strips[n].width();
+            // Ways past the rows' ends are as wide as the hall leaves, and tell nothing of what leads through the rows.
+            let is_no_bay = || !is_told_within && view.pitch.is_some_and(|pitch| !is_as_bays(width, pitch));
+            stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && !is_bay());
         }
     }
     let mut flags = stays.into_iter();
@@ -144,6 +150,8 @@ struct Crossed {
     goes_on: bool,
     /// Another leads on through the next one, in line.
     is_led_on: bool,
+    /// One of them goes on beyond both its sides.
+    is_within: bool,
 }
 
 impl Crossed {
@@ -167,8 +175,9 @@ impl Crossed {
             let [s, u] = view.crossing(other, f64::midpoint(row.across[0], row.across[1]), strip.middle());
             // Past a row's end it leads where one of its sides does: further off the next hall may lie.
             let [from, to] = wider(row.along, strip.width() / 2.0);
-            (from..=to).contains(&u).then_some(s)
+            (from..=to).contains(&u).then_some((s, u))
         };
+        let crosses_at = |n: usize, m: usize| place(n, &rows[m].0, rows[m].1);
         let crosses = |n: usize, s: f64| (strips[n].along[0]..=strips[n].along[1]).contains(&s);
         // The rows above and below each aisle.
         let mut beside: Vec<[Vec<usize>; 2]> = vec![Default::default(); aisles.len()];
@@ -179,7 +188,7 @@ impl Crossed {
             beside[between[0]][0].push(m);
             beside[between[1]][1].push(m);
             for n in leading_across([view, other], placed, row, widest) {
-                if place(n, row, *between).is_some_and(|s| crosses(n, s)) {
+                if crosses_at(n, m).is_some_and(|(s, _)| crosses(n, s)) {
                     crossed[n].push(m);
                     through[m].push(n);
                 }
@@ -192,10 +201,14 @@ impl Crossed {
             let is_wall = |m: &usize| walls[*m] || own.iter().any(|&n| rows[*m].0.is_wall_beside(&rows[n].0));
             let beside = |m: usize| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]);
             let next = || own.iter().flat_map(|&m| beside(m)).filter(|m| !is_wall(m));
-            let goes_on = next().any(|&m| place(n, &rows[m].0, rows[m].1).is_some_and(|s| !crosses(n, s)));
+            let goes_on = next().any(|&m| crosses_at(n, m).is_some_and(|(s, _)| !crosses(n, s)));
             let is_in_line = |&other: &usize| other != n && overlap(strips[n].across, strips[other].across) > 0.0;
             let is_led_on = next().any(|&m| through[m].iter().any(is_in_line));
-            Self { rows: own.len(), rest, goes_on, is_led_on }
+            let is_within = own.iter().any(|&m| {
+                let ([from, to], width) = (rows[m].0.along, strips[n].width());
+                crosses_at(n, m).is_some_and(|(_, u)| from + width < u && u < to - width)
+            });
+            Self { rows: own.len(), rest, goes_on, is_led_on, is_within }
         };
         crossed.iter().enumerate().map(of_strip).collect()
     }
