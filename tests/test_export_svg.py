@@ -127,7 +127,7 @@ def test_racks_walls_and_aisles_are_drawn_in_their_colours_at_their_places(which
     for rack in survey.of_kind("rack"):
         shape = shapely.Polygon(rack["polygon"])
         low, high = np.array(shape.bounds).reshape(2, 2)
-        points = np.random.default_rng(1).uniform(low, high, (600, 2))
+        points = np.random.default_rng(1).uniform(low, high, (20_000, 2))
         inside = points[shapely.contains_xy(shape.buffer(-0.2), *points.T)]
         outside = points[~shapely.contains_xy(racks, *points.T)]
         plain, over = (drawn.at(where) for where in (inside, outside))

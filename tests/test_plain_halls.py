@@ -39,12 +39,12 @@ def test_racks_in_plain_halls_are_counted_and_sure() -> None:
     for seed in range(64):
         hall = plain.hall(seed)
         plan = plain.planned(hall)
-        # Along a wall a rack cannot be told from it, and few do not make a place of racks.
-        if hall.at_walls == "racks" or plan["rack"] < plain.RACKS:
+        # Few do not make a place of racks.
+        if plan["rack"] < plain.RACKS:
             continue
         survey = groundplan.survey(plain.picture(hall), resolution=hall.resolution, threads=1)
         alike.append(len(survey.of_kind("rack")) == plan["rack"])
         sure += [rack["confidence"] > 0.5 for rack in survey.of_kind("rack")]
-    assert len(alike) >= 20
+    assert len(alike) >= 40
     assert np.mean(alike) >= 0.9
     assert np.mean(sure) >= 0.9

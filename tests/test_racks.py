@@ -134,3 +134,34 @@ def test_a_row_goes_on_where_one_of_its_aisles_was_not_driven() -> None:
 def test_rooms_and_the_unknown_beside_two_ways_that_cross_are_no_racks(shared: Path) -> None:
     survey = groundplan.survey(groundplan.read(shared / "maps" / "halmstad" / "E5_13.yaml"))
     assert len(survey.of_kind("corridor")) == 2 and survey.of_kind("rack") == []
+
+
+def rows_and_a_wall() -> Picture:
+    """Three rows of two racks with a way between the two, and a wall below them with nothing at it yet."""
+    picture = hall(40.0, 17.0)
+    for y in (4.0, 8.2, 12.4):
+        put(picture, 4.0, y, 14.0, 1.2)
+        put(picture, 22.0, y, 14.0, 1.2)
+    return picture
+
+
+def at_the_wall(picture: Picture) -> list[list[float]]:
+    """From where to where the racks at that wall stand, metres of the floor."""
+    top = picture.shape[0] / 20 - 1.0
+    low = [rack for rack in racks(picture) if top - rack["axis"][0][1] < 1.2]
+    return sorted(sorted(x - 1.0 for x, _ in rack["axis"]) for rack in low)
+
+
+@pytest.mark.parametrize("inside", [0, 205, 254])
+def test_racks_at_a_wall_end_where_the_ways_past_them_lead_on_to_it(inside: int) -> None:
+    picture = rows_and_a_wall()
+    put(picture, 4.0, 0.0, 14.0, 1.0, inside)
+    put(picture, 22.0, 0.0, 14.0, 1.0, inside)
+    assert np.array(at_the_wall(picture)) == pytest.approx(np.array([[4.0, 18.0], [22.0, 36.0]]), abs=0.3)
+
+
+def test_empty_bays_of_a_rack_at_a_wall_part_it_nowhere_be_two_of_them_before_a_way() -> None:
+    picture = rows_and_a_wall()
+    for bay in {0, 1, 3, 4, 7, 8, 10, 11}:
+        put(picture, 4.0 + 2.7 * bay, 0.0, 2.6, 1.0, inside=0)
+    assert np.array(at_the_wall(picture)) == pytest.approx(np.array([[4.0, 36.3]]), abs=0.3)

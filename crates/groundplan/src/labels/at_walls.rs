@@ -1,8 +1,9 @@
-//! Racks at walls: goods stand before a wall, and hide it but for gaps between them and what of it is beyond their ends.
+//! Racks at walls: they hide the wall behind them but for gaps between goods and what of it is beyond their ends.
 
 use super::beside::placed;
+use super::blocks;
 use super::corridors::Strip;
-use super::racks::{Crossings, Row, SAME, lines_behind, without};
+use super::racks::{self, Crossings, Row, SAME, lines_behind, without};
 use super::turned::Turned;
 use super::whole::{RIM, trimmed};
 use crate::bands::flat_map_each;
@@ -22,8 +23,35 @@ const SOLID: f64 = 0.95;
 /// Goods are looked for no nearer to it, metres.
 const BEFORE: f64 = 0.3;
 
+/// What tells a row at a wall: the row, the line of the wall, on which side of the row that is, and the mouths beside it.
+type Told = fn(&Turned, &Row, (usize, usize), &[[f64; 2]]) -> bool;
+
+/// Rows between a corridor and a wall to which the ways past their ends lead on, and which shows there.
+pub fn past_which_ways_lead(
+    views: &[Turned],
+    strips: &[Strip],
+    extents: &[[f64; 2]],
+    known: &[Row],
+    threads: usize,
+) -> Vec<Row> {
+    find(views, strips, extents, known, threads, |view, row, (line, _), mouths| {
+        is_wall(view, line, mouths) && blocks::is_oblong(row) && racks::is_taken(view, row)
+    })
+}
+
 /// Rows between a corridor and a wall that goods hide but for gaps between them, and that is seen beyond their ends.
-pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], known: &[Row], threads: usize) -> Vec<Row> {
+pub fn of_goods(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], known: &[Row], threads: usize) -> Vec<Row> {
+    find(views, strips, extents, known, threads, |view, row, (line, side), _| hides_wall(view, line, side, row))
+}
+
+fn find(
+    views: &[Turned],
+    strips: &[Strip],
+    extents: &[[f64; 2]],
+    known: &[Row],
+    threads: usize,
+    is_row: Told,
+) -> Vec<Row> {
     let crossings = Crossings::new(views, strips, extents);
     let rows = placed(views, known.iter().map(Row::place));
     let beside = |n: usize| {
@@ -42,15 +70,20 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], known: &[R
                 }
             }
             for (_, line) in lines_behind(view, own, side) {
+                if open.is_empty() {
+                    break;
+                }
                 let far = view.offsets[line];
                 let across = sorted([own, far]);
                 let row = |along| Row { direction: strip.direction, along, across, between: None };
-                let rows = crossings.uncrossed(strip.direction, across, open.clone()).into_iter().map(row);
+                let (pieces, mouths) = crossings.between_mouths(n, across, open.clone());
+                let rows = crossings.uncrossed(strip.direction, across, pieces).into_iter().map(row);
                 let rows = rows.filter_map(|row| trimmed(view, &row, before(&row, side)));
-                for row in rows.filter(|row| hides_wall(view, line, side, row)) {
-                    open = without(open, row.along[0], row.along[1]);
-                    found.push(row);
-                }
+                let rows: Vec<Row> = rows
+                    .filter(|row| racks::stands_before(view, row, side) && is_row(view, row, (line, side), &mouths))
+                    .collect();
+                open = racks::left_of(open, &rows, &mouths);
+                found.extend(rows);
             }
         }
         found
@@ -85,4 +118,12 @@ fn hides_wall(view: &Turned, line: usize, side: usize, row: &Row) -> bool {
         && view.mean_blocked(columns, low, high) > UNSEEN
         && shown.len() as f64 * view.cell >= 1.0
         && shown.iter().filter(|is| **is).count() as f64 > WALL_SHOWN * shown.len() as f64
+}
+
+/// True when a wall shows in one of the mouths between which racks hide it; through others ways may lead on.
+fn is_wall(view: &Turned, line: usize, mouths: &[[f64; 2]]) -> bool {
+    mouths.iter().any(|mouth| {
+        let columns = view.column(mouth[0])..view.column(mouth[1]);
+        !columns.is_empty() && view.touched[line].count(columns.clone()) as f64 >= WALL_SHOWN * columns.len() as f64
+    })
 }

@@ -4,10 +4,12 @@
 //! where other corridors cross, and holds something.
 
 use super::beside::{Beside, placed};
+use super::blocks;
 use super::corridors::{self, Strip};
 use super::near::Near;
+use super::runs::close;
 use super::turned::{Turned, least_sine};
-use crate::ends::{overlap, sorted, wider};
+use crate::ends::{overlap, shared, wider};
 use std::ops::Range;
 
 /// A piece of a row.
@@ -76,10 +78,15 @@ const SEEN_OUTSIDE: f64 = 0.5;
 /// each such part on one alone over so much.
 const ON_FACE: f64 = 0.15;
 const OUTLINED: (f64, f64) = (0.5, 0.05);
+/// No robot comes through a gap that is narrower, metres.
+pub const WAY_IN: f64 = 0.5;
 /// The corridors along a rack are so many times as long as a gap in it.
 const LONGER: f64 = 1.5;
 /// A place has racks when it has so many, and so many metres of them for a metre of corridor.
 const PLACE: (usize, f64) = (3, 0.25);
+/// So much of what is floor between racks may be taken, and so much of a row with no empty bays be floor.
+const CLUTTER: f64 = 0.1;
+const EMPTY: f64 = 0.1;
 /// Sides nearer than this are the same, metres.
 pub const SAME: f64 = 0.3;
 
@@ -100,14 +107,20 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row
             let own = strip.across[side];
             // Where no corridor runs along its other side, a row's other face must have been seen.
             for (depth, line) in lines_behind(view, own, side) {
+                if open.is_empty() {
+                    break;
+                }
                 let across = if side == 1 { [own, own + depth] } else { [own - depth, own] };
                 let row = |along| Row { direction: strip.direction, along, across, between: None };
-                let is_row = |row: &Row| taken(view, row) >= TAKEN_OUTSIDE && seen(view, line, row) >= SEEN_OUTSIDE;
-                let pieces = crossings.uncrossed(strip.direction, across, open.clone());
+                let (pieces, mouths) = crossings.between_mouths(n, across, open.clone());
+                let pieces = crossings.uncrossed(strip.direction, across, pieces);
+                let is_row = |row: &Row| {
+                    let is_outlined = || blocks::is_oblong(row) && is_outlined(view, row);
+                    is_taken(view, row) && stands_before(view, row, side) && seen(view, line, row) >= SEEN_OUTSIDE
+                        || is_outlined()
+                };
                 let found: Vec<Row> = pieces.into_iter().map(row).filter(is_row).collect();
-                for row in &found {
-                    open = without(open, row.along[0], row.along[1]);
-                }
+                open = left_of(open, &found, &mouths);
                 rows.extend(found);
             }
         }
@@ -222,6 +235,48 @@ impl<'a> Crossings<'a> {
         }
         pieces.into_iter().filter(|(from, to)| to - from >= SHORTEST).map(|(from, to)| [from, to]).collect()
     }
+
+    /// Pieces of a row on one side of a corridor without its mouths, and these: where others lead up to that corridor they
+    /// end in it, and where there is floor between racks they go on to the wall behind. A row in which there is floor
+    /// elsewhere too has empty bays, and no mouths that one could tell from them.
+    pub fn between_mouths(
+        &self,
+        n: usize,
+        across: [f64; 2],
+        pieces: Vec<(f64, f64)>,
+    ) -> (Vec<(f64, f64)>, Vec<[f64; 2]>) {
+        let own = &self.strips[n];
+        let view = &self.views[own.direction];
+        let end_in = |other: &Strip| {
+            let ends = across_row(view, &self.views[other.direction], other, across).map(|[_, u]| u);
+            shared(ends, self.extents[n])
+        };
+        // What stands on its near face is of it, and a wall at its far one may be.
+        let [low, high] = across;
+        let [low, high] =
+            if low < own.middle() { [low + SAME, high + view.cell] } else { [low - view.cell, high - SAME] };
+        let floor = |[from, to]: [f64; 2]| {
+            let columns = view.column(from)..view.column(to.max(from));
+            let taken = view.blocked_where(columns.clone(), low, high, |share| share > 0.0).count(0..columns.len());
+            [columns.len() - taken, columns.len()].map(|count| count as f64)
+        };
+        // Of the cells at its sides the racks' ends may be a part.
+        let is_open = |mouth: &[f64; 2]| {
+            let [free, all] = floor(wider(*mouth, -view.cell));
+            all > 0.0 && free >= (1.0 - CLUTTER) * all
+        };
+        let ground = view.rectangle(self.extents[n], own.across);
+        let others = self.near.beside(&ground).into_iter().map(|other| &self.strips[other as usize]);
+        let crossing = others.filter(|other| other.direction != own.direction);
+        let mouths: Vec<_> = crossing.map(end_in).filter(is_open).collect();
+        if mouths.is_empty() {
+            return (pieces, mouths);
+        }
+        let left = mouths.iter().fold(pieces.clone(), |left, [from, to]| without(left, *from, *to));
+        let elsewhere: Vec<_> = left.iter().map(|(from, to)| floor([*from, *to])).collect();
+        let [free, all] = [0, 1].map(|n| elsewhere.iter().map(|counts| counts[n]).sum::<f64>());
+        if free <= EMPTY * all { (left, mouths) } else { (pieces, Vec::new()) }
+    }
 }
 
 /// True when a strip lies between two much longer corridors that are no further apart than the faces of a rack; of all it
@@ -276,6 +331,13 @@ fn seen(view: &Turned, line: usize, row: &Row) -> f64 {
     view.covered[line].count(columns.clone()) as f64 / columns.len() as f64
 }
 
+/// Pieces without rows that were found, and then without the mouths between these: no deeper row has floor before it.
+pub fn left_of(pieces: Vec<(f64, f64)>, rows: &[Row], mouths: &[[f64; 2]]) -> Vec<(f64, f64)> {
+    let mouths = if rows.is_empty() { &[] } else { mouths };
+    let taken = rows.iter().map(|row| row.along).chain(mouths.iter().copied());
+    taken.fold(pieces, |left, [from, to]| without(left, from, to))
+}
+
 /// Pieces without what lies between two places.
 pub fn without(pieces: Vec<(f64, f64)>, from: f64, to: f64) -> Vec<(f64, f64)> {
     let cut = pieces.into_iter().flat_map(|(a, b)| [(a, b.min(from)), (a.max(to), b)]);
@@ -291,19 +353,29 @@ pub fn crossed(
     extent: [f64; 2],
     across: [f64; 2],
 ) -> Option<[f64; 2]> {
-    let middle = f64::midpoint(across[0], across[1]);
-    let ends = crossing.across.map(|t| view.crossing(other, middle, t));
+    let ends = across_row(view, other, crossing, across);
     let within = ends.iter().any(|[s, _]| (extent[0]..=extent[1]).contains(s));
-    within.then(|| sorted([ends[0][1], ends[1][1]]))
+    within.then(|| ends.map(|[_, u]| u))
 }
 
-/// True when something stands on both faces of a row over much of it, and hardly anywhere on one alone: it is drawn by its
-/// outline, and what floor shows within it nobody comes to.
+/// Where the two sides of a strip of another direction cross the middle of a row: the place along that strip, and along the
+/// row, in whose order they are.
+fn across_row(view: &Turned, other: &Turned, strip: &Strip, across: [f64; 2]) -> [[f64; 2]; 2] {
+    let middle = f64::midpoint(across[0], across[1]);
+    let [one, two] = strip.across.map(|t| view.crossing(other, middle, t));
+    if one[1] <= two[1] { [one, two] } else { [two, one] }
+}
+
+/// True when something stands on both faces of a row over much of it, and hardly anywhere on one alone, but for gaps through
+/// which no robot comes: it is drawn by its outline, and what floor shows within it nobody comes to.
 fn is_outlined(view: &Turned, row: &Row) -> bool {
-    let [one, two] = row.across.map(|face| view.some_occupied(columns(view, row), face - ON_FACE, face + ON_FACE));
-    let stand = |on: fn(bool, bool) -> bool| {
-        one.iter().zip(&two).filter(|(one, two)| on(**one > 0.0, **two > 0.0)).count() as f64
-    };
+    let [one, two] = row.across.map(|face| {
+        let stands = view.some_occupied(columns(view, row), face - ON_FACE, face + ON_FACE);
+        let mut stands: Vec<bool> = stands.iter().map(|share| *share > 0.0).collect();
+        close(&mut stands, (WAY_IN / view.cell) as usize);
+        stands
+    });
+    let stand = |on: fn(bool, bool) -> bool| one.iter().zip(&two).filter(|(one, two)| on(**one, **two)).count() as f64;
     let both = stand(|one, two| one && two);
     both >= OUTLINED.0 * one.len() as f64 && stand(|one, two| one != two) <= OUTLINED.1 * both
 }
@@ -311,6 +383,18 @@ fn is_outlined(view: &Turned, row: &Row) -> bool {
 /// Share of a row that is not free.
 fn taken(view: &Turned, row: &Row) -> f64 {
     view.mean_blocked(columns(view, row), row.across[0], row.across[1])
+}
+
+/// True when enough of a row is taken that has a corridor on one side alone.
+pub fn is_taken(view: &Turned, row: &Row) -> bool {
+    taken(view, row) >= TAKEN_OUTSIDE
+}
+
+/// True when something stands at the face of a row that lies away from the one on `side`.
+pub fn stands_before(view: &Turned, row: &Row, side: usize) -> bool {
+    let mut front = row.clone();
+    front.across[side] = if side == 1 { row.across[0] + DEPTH.0 } else { row.across[1] - DEPTH.0 };
+    taken(view, &front) >= TAKEN
 }
 
 /// The columns of a row, one at least.

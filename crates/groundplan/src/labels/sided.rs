@@ -3,7 +3,7 @@
 
 use super::beside::Beside;
 use super::corridors::{ALIKE, Strip};
-use super::racks::{self, DEPTH, SAME};
+use super::racks::{self, DEPTH, SAME, WAY_IN};
 use super::runs::{close, runs};
 use super::sections::{self, WIDTH};
 use super::turned::Turned;
@@ -13,9 +13,8 @@ use crate::ends::{overlap, shared, wider};
 const SIDED: f64 = 0.6;
 /// It does so from so far within the side to so far beyond, in widths.
 const SIDE: (f64, f64) = (0.1, 0.25);
-/// An outline is closed where something of it stands so near, metres, but for gaps through which no robot comes, metres.
+/// An outline is closed where something of it stands so near, metres, but for gaps through which no robot comes.
 const OUTLINE: f64 = 0.15;
-const WAY_IN: f64 = 0.5;
 /// So far beyond an end of it, metres, is floor where less than that share is not free.
 const BEYOND: (f64, f64) = (0.3, 1.3);
 const FLOOR: f64 = 0.5;

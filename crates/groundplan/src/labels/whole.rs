@@ -41,9 +41,9 @@ pub fn find(
     threads: usize,
 ) -> Vec<Row> {
     let mut known = without_walls(views, rows);
+    known.extend(at_walls::past_which_ways_lead(views, strips, extents, &known, threads));
     if racks::are_here(&known, extents) && racks::are_here(&of_a_kind(&known), extents) {
-        let at_walls = at_walls::find(views, strips, extents, &known, threads);
-        known.extend(at_walls);
+        known.extend(at_walls::of_goods(views, strips, extents, &known, threads));
     } else {
         known.clear();
     }
