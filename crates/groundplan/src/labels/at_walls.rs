@@ -3,7 +3,8 @@
 use super::beside::placed;
 use super::blocks;
 use super::corridors::Strip;
-use super::racks::{self, Crossings, Row, SAME, lines_behind, without};
+use super::racks;
+use super::rows::{Crossings, Row, SAME, lines_behind, without};
 use super::turned::Turned;
 use super::whole::{RIM, trimmed};
 use crate::bands::flat_map_each;

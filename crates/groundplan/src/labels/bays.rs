@@ -6,8 +6,8 @@
 use super::Evidence;
 use super::period::{self, Period};
 use super::pitch;
-use super::racks::Row;
 use super::recall::Key;
+use super::rows::Row;
 use super::turned::Turned;
 use crate::bands::map_each;
 use std::sync::Arc;

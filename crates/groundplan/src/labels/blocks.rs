@@ -3,8 +3,8 @@
 
 use super::beside::{Beside, placed};
 use super::near::Near;
-use super::racks::{DEPTH, Row, apart};
 use super::recall::{Key, Recall};
+use super::rows::{DEPTH, Row, apart};
 use super::runs::{close, runs};
 use super::turned::Turned;
 use crate::bands::flat_map_each;

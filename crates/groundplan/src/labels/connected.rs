@@ -4,7 +4,7 @@
 use super::beside::{Beside, placed};
 use super::corridors::{ALIKE, ALONE, Strip};
 use super::junctions::{self, Meeting};
-use super::racks::{self, DEPTH};
+use super::rows::{self, DEPTH};
 use super::sided;
 use super::turned::Turned;
 use crate::ends::{overlap, shared, wider};
@@ -54,7 +54,7 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
             };
             let is_aisle = || is_one_of(ALONE.0, Beyond::Near) || is_one_of(NICHE.0, Beyond::Rack);
             match met[n].len() {
-                0 | 1 if racks::is_within_row(&strips, &placed, n) => false,
+                0 | 1 if rows::is_within_row(&strips, &placed, n) => false,
                 0 if is_shut(n) && sided::is_within_outline(&views[strips[n].direction], &strips, &placed, n) => false,
                 0 if is_shut(n) => {
                     let is_sided = || sided::is_sided(&views[strips[n].direction], &strips[n]);

@@ -8,7 +8,7 @@ use super::corridors::{self, Strip};
 use super::family;
 use super::gates::{crossing, leading_across};
 use super::look::Look;
-use super::racks::{self, Row};
+use super::rows::{self, Row};
 use super::sections::{Columns, Free, WIDTH};
 use super::sided;
 use super::turned::Turned;
@@ -67,13 +67,13 @@ fn is_deep(views: &[Turned], strip: &Strip, strips: &[Strip], placed: &[Beside])
         let [along, across] = [0, 1].map(|axis| around(corners.iter().map(|&corner| other.place(corner)[axis])));
         let crossing = placed[other.direction].touching(along, across).into_iter().map(|n| &strips[n]);
         for way in crossing.filter(|way| !way.bays) {
-            if let Some([from, to]) = racks::crossed(view, other, way, way.along, strip.across) {
-                pieces = racks::without(pieces, from, to);
+            if let Some([from, to]) = rows::crossed(view, other, way, way.along, strip.across) {
+                pieces = rows::without(pieces, from, to);
             }
         }
     }
     let piece = |(from, to): (f64, f64)| Strip { along: [from, to], ..strip.clone() };
-    pieces.into_iter().map(piece).any(|piece| piece.length() > racks::DEPTH.1 && sided::is_sided(view, &piece))
+    pieces.into_iter().map(piece).any(|piece| piece.length() > rows::DEPTH.1 && sided::is_sided(view, &piece))
 }
 
 /// What uprights of the rows that a strip crosses leave of it, where they stand in it in most of them: a line along it was
@@ -134,12 +134,12 @@ fn crossed(
         let Some(other) = crossing(views, view.direction) else { continue };
         // The rows as they were if nothing led across them.
         let is_aisle = |n: &usize| {
-            strips[*n].direction == view.direction && !strips[*n].bays && !racks::is_within_row(strips, &placed, *n)
+            strips[*n].direction == view.direction && !strips[*n].bays && !rows::is_within_row(strips, &placed, *n)
         };
         let numbers: Vec<usize> = (0..strips.len()).filter(is_aisle).collect();
         let aisles: Vec<Strip> = numbers.iter().map(|&n| strips[n].clone()).collect();
         let extents: Vec<[f64; 2]> = aisles.iter().map(|strip| strip.along).collect();
-        let mut rows = racks::between(views, &aisles, &extents);
+        let mut rows = rows::between(views, &aisles, &extents);
         for row in &mut rows {
             row.between = row.between.map(|pair| pair.map(|n| numbers[n]));
         }

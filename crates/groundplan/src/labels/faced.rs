@@ -3,7 +3,7 @@
 use super::barriers;
 use super::beside::placed;
 use super::corridors::Strip;
-use super::racks::{Row, SAME};
+use super::rows::{Row, SAME};
 use super::turned::Turned;
 use crate::ends::{overlap, shared, wider};
 

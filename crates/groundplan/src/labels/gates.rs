@@ -4,7 +4,7 @@ use super::Evidence;
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
 use super::look::Look;
-use super::racks::Row;
+use super::rows::Row;
 use super::sections::{Columns, WIDTH};
 use super::through::{BETWEEN_CELLS, Seen, Through};
 use super::turned::Turned;

@@ -1,8 +1,8 @@
 //! The ground of racks that stand on legs, in the places of a view: it is taken, though the map shows floor there.
 
 use super::Evidence;
-use super::racks::Row;
 use super::recall::Key;
+use super::rows::Row;
 use super::turned::{Turned, rectangle};
 use crate::ends::{around, sorted};
 use std::ops::Range;

@@ -7,7 +7,7 @@ use super::blocks;
 use super::frames::{AISLE, BACK, Frame, Legs, NEAR, frames};
 use super::grounds::on_map;
 use super::near::Near;
-use super::racks::Row;
+use super::rows::Row;
 use super::uprights::Upright;
 use crate::bands::{map_each, worth};
 use crate::ends::{both, overlap};

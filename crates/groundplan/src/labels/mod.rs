@@ -41,6 +41,7 @@ mod racks;
 mod ragged;
 mod recall;
 mod rooms;
+mod rows;
 mod runs;
 mod sections;
 mod shares;

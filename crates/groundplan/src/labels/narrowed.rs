@@ -3,7 +3,7 @@
 
 use super::beside::Beside;
 use super::corridors::Strip;
-use super::racks::{DEPTH, Row, SAME};
+use super::rows::{DEPTH, Row, SAME};
 use super::turned::Turned;
 use crate::ends::{around, both, overlap, shared, wider};
 

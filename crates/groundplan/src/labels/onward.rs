@@ -3,7 +3,7 @@
 
 use super::barriers;
 use super::corridors::Strip;
-use super::racks::SAME;
+use super::rows::SAME;
 use super::stretches::beyond;
 use super::turned::Turned;
 use crate::ends::overlap;

@@ -1,74 +1,14 @@
 //! Racks: rows that are taken, between two ways that run along them.
 //!
-//! A row is known by its two faces, be it half empty: it lies between neighbouring corridors of one direction, is cut
-//! where other corridors cross, and holds something.
+//! A row may be half empty, and it holds something.
 
-use super::beside::{Beside, placed};
 use super::blocks;
-use super::corridors::{self, Strip};
-use super::near::Near;
+use super::corridors::Strip;
+use super::rows::{Crossings, DEPTH, Row, apart, lines_behind, without};
 use super::runs::close;
-use super::turned::{Turned, least_sine};
-use crate::ends::{overlap, shared, wider};
+use super::turned::Turned;
 use std::ops::Range;
 
-/// A piece of a row.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    /// Index of the direction that it runs along.
-    pub direction: usize,
-    /// Where it begins and ends, along.
-    pub along: [f64; 2],
-    /// Its two faces, across.
-    pub across: [f64; 2],
-    /// The corridors below and above it, where there are two.
-    pub between: Option<[usize; 2]>,
-}
-
-impl Row {
-    pub fn length(&self) -> f64 {
-        self.along[1] - self.along[0]
-    }
-
-    pub fn depth(&self) -> f64 {
-        self.across[1] - self.across[0]
-    }
-
-    /// No deeper than many a wall.
-    pub fn is_shallow(&self) -> bool {
-        self.depth() < DEPTH.0
-    }
-
-    /// True when it is a wall beside another, with the next hall behind it: that one is a row of racks, and it is not.
-    pub fn is_wall_beside(&self, other: &Self) -> bool {
-        self.is_shallow() && !other.is_shallow()
-    }
-
-    /// Its direction and its places, as [`placed`] takes them.
-    pub fn place(&self) -> (usize, [f64; 2], [f64; 2]) {
-        (self.direction, self.along, self.across)
-    }
-
-    /// Its middle in the map frame.
-    pub fn middle(&self, views: &[Turned]) -> [f64; 2] {
-        let [u, v] = [self.along, self.across].map(|ends| f64::midpoint(ends[0], ends[1]));
-        views[self.direction].to_map([u, v])
-    }
-
-    /// True when a point of the map frame lies in it.
-    pub fn holds(&self, views: &[Turned], point: [f64; 2]) -> bool {
-        let [u, v] = views[self.direction].place(point);
-        (self.along[0]..=self.along[1]).contains(&u) && (self.across[0]..=self.across[1]).contains(&v)
-    }
-}
-
-/// Two faces are this far apart, metres: less is a wall, more is a room.
-pub const DEPTH: (f64, f64) = (0.5, 3.6);
-/// Between two corridors what is so deep from edge to edge, which is a pixel less than it is, may be a row of shelves or
-/// machines, metres, as others beside it are.
-const SHALLOW: f64 = 0.24;
-/// A row's piece is at least so long, metres.
-pub const SHORTEST: f64 = 1.2;
 /// Least share of a row that is taken.
 const TAKEN: f64 = 0.12;
 /// The same where no corridor runs along its other side.
@@ -80,15 +20,8 @@ const ON_FACE: f64 = 0.15;
 const OUTLINED: (f64, f64) = (0.5, 0.05);
 /// No robot comes through a gap that is narrower, metres.
 pub const WAY_IN: f64 = 0.5;
-/// The corridors along a rack are so many times as long as a gap in it.
-const LONGER: f64 = 1.5;
 /// A place has racks when it has so many, and so many metres of them for a metre of corridor.
 const PLACE: (usize, f64) = (3, 0.25);
-/// So much of what is floor between racks may be taken, and so much of a row with no empty bays be floor.
-const CLUTTER: f64 = 0.1;
-const EMPTY: f64 = 0.1;
-/// Sides nearer than this are the same, metres.
-pub const SAME: f64 = 0.3;
 
 /// The rows between the corridors and at the outer sides of them, the longest first.
 pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
@@ -128,201 +61,12 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row
     apart(views, rows)
 }
 
-/// The lines on one side of a corridor that may be a row's other face, and how far from its own side, the nearest first.
-pub fn lines_behind(view: &Turned, own: f64, side: usize) -> Vec<(f64, usize)> {
-    let depth = |offset: f64| if side == 1 { offset - own } else { own - offset };
-    let near = view.lines(own - 2.0 * DEPTH.1, own + 2.0 * DEPTH.1);
-    let all = near.map(|line| (depth(view.offsets[line]), line));
-    let mut lines: Vec<_> = all.filter(|(depth, _)| (DEPTH.0..=DEPTH.1).contains(depth)).collect();
-    lines.sort_by(|a, b| a.0.total_cmp(&b.0));
-    lines
-}
-
-/// What lies between neighbouring corridors, and may be a row, be it taken or not.
-pub fn between(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
-    Crossings::new(views, strips, extents).between()
-}
-
-/// The corridors of a place: those of one direction lie beside rows, and those of others cross them.
-pub struct Crossings<'a> {
-    views: &'a [Turned],
-    strips: &'a [Strip],
-    extents: &'a [[f64; 2]],
-    near: Near,
-    placed: Vec<Beside>,
-    /// How far along a row a crossing one may reach beyond where its other side crosses it.
-    reach: f64,
-}
-
-impl<'a> Crossings<'a> {
-    pub fn new(views: &'a [Turned], strips: &'a [Strip], extents: &'a [[f64; 2]]) -> Self {
-        let polygons: Vec<_> =
-            strips.iter().zip(extents).map(|(s, extent)| views[s.direction].rectangle(*extent, s.across)).collect();
-        let widest = corridors::widest(strips);
-        let placed = placed(views, strips.iter().zip(extents).map(|(s, extent)| (s.direction, *extent, s.across)));
-        Self {
-            views,
-            strips,
-            extents,
-            near: Near::polygons(&polygons),
-            placed,
-            reach: widest / least_sine(views, f64::MIN_POSITIVE),
-        }
-    }
-
-    /// The corridors on one side of a corridor, no further off than a row is deep, the nearest first; each with how far.
-    pub fn behind(&self, n: usize, side: usize) -> Vec<(usize, f64)> {
-        let own = &self.strips[n];
-        let gap = |m: usize| {
-            let other = &self.strips[m];
-            if side == 1 { other.across[0] - own.across[1] } else { own.across[0] - other.across[1] }
-        };
-        let near = self.placed[own.direction].touching(self.extents[n], wider(own.across, 2.0 * DEPTH.1));
-        let others = near.into_iter().filter(|&m| m != n).map(|m| (m, gap(m)));
-        let mut found: Vec<(usize, f64)> = others.filter(|(_, gap)| *gap > -SAME && *gap <= DEPTH.1).collect();
-        found.sort_by(|a, b| a.1.total_cmp(&b.1));
-        found
-    }
-
-    /// A row from face to face, without so much behind those of its faces along which no corridor runs, metres.
-    pub fn before_backs(&self, row: &Row, by: f64) -> [f64; 2] {
-        let near = self.placed[row.direction].touching(row.along, wider(row.across, SAME));
-        let is_before =
-            |side: usize| near.iter().any(|&n| (self.strips[n].across[1 - side] - row.across[side]).abs() <= SAME);
-        let [low, high] = [0, 1].map(|side| if is_before(side) { 0.0 } else { by });
-        [row.across[0] + low, row.across[1] - high]
-    }
-
-    /// What lies between neighbouring corridors.
-    fn between(&self) -> Vec<Row> {
-        let Self { strips, extents, .. } = *self;
-        let mut rows = Vec::new();
-        for (n, strip) in strips.iter().enumerate() {
-            let mut open = vec![(extents[n][0], extents[n][1])];
-            for (m, depth) in self.behind(n, 1) {
-                let [from, to] = extents[m];
-                let shared = open.iter().map(|(a, b)| (a.max(from), b.min(to))).filter(|(a, b)| a < b).collect();
-                open = without(open, from, to);
-                if depth >= SHALLOW {
-                    let across = [strip.across[1], strips[m].across[0]];
-                    let pieces = self.uncrossed(strip.direction, across, shared).into_iter();
-                    rows.extend(pieces.map(|along| Row {
-                        direction: strip.direction,
-                        along,
-                        across,
-                        between: Some([n, m]),
-                    }));
-                }
-            }
-        }
-        rows
-    }
-
-    /// Pieces of a row beside a corridor that no other corridor crosses, each long enough.
-    pub fn uncrossed(&self, direction: usize, across: [f64; 2], mut pieces: Vec<(f64, f64)>) -> Vec<[f64; 2]> {
-        let view = &self.views[direction];
-        let middle = f64::midpoint(across[0], across[1]);
-        let ends = [pieces.first().map_or(0.0, |piece| piece.0), pieces.last().map_or(0.0, |piece| piece.1)];
-        let row = view.rectangle([ends[0] - self.reach, ends[1] + self.reach], [middle; 2]);
-        for other in self.near.beside(&row).into_iter().map(|other| other as usize) {
-            let crossing = &self.strips[other];
-            if crossing.direction != direction
-                && let Some([from, to]) =
-                    crossed(view, &self.views[crossing.direction], crossing, self.extents[other], across)
-            {
-                pieces = without(pieces, from, to);
-            }
-        }
-        pieces.into_iter().filter(|(from, to)| to - from >= SHORTEST).map(|(from, to)| [from, to]).collect()
-    }
-
-    /// Pieces of a row on one side of a corridor without its mouths, and these: where others lead up to that corridor they
-    /// end in it, and where there is floor between racks they go on to the wall behind. A row in which there is floor
-    /// elsewhere too has empty bays, and no mouths that one could tell from them.
-    pub fn between_mouths(
-        &self,
-        n: usize,
-        across: [f64; 2],
-        pieces: Vec<(f64, f64)>,
-    ) -> (Vec<(f64, f64)>, Vec<[f64; 2]>) {
-        let own = &self.strips[n];
-        let view = &self.views[own.direction];
-        let end_in = |other: &Strip| {
-            let ends = across_row(view, &self.views[other.direction], other, across).map(|[_, u]| u);
-            shared(ends, self.extents[n])
-        };
-        // What stands on its near face is of it, and a wall at its far one may be.
-        let [low, high] = across;
-        let [low, high] =
-            if low < own.middle() { [low + SAME, high + view.cell] } else { [low - view.cell, high - SAME] };
-        let floor = |[from, to]: [f64; 2]| {
-            let columns = view.column(from)..view.column(to.max(from));
-            let taken = view.blocked_where(columns.clone(), low, high, |share| share > 0.0).count(0..columns.len());
-            [columns.len() - taken, columns.len()].map(|count| count as f64)
-        };
-        // Of the cells at its sides the racks' ends may be a part.
-        let is_open = |mouth: &[f64; 2]| {
-            let [free, all] = floor(wider(*mouth, -view.cell));
-            all > 0.0 && free >= (1.0 - CLUTTER) * all
-        };
-        let ground = view.rectangle(self.extents[n], own.across);
-        let others = self.near.beside(&ground).into_iter().map(|other| &self.strips[other as usize]);
-        let crossing = others.filter(|other| other.direction != own.direction);
-        let mouths: Vec<_> = crossing.map(end_in).filter(is_open).collect();
-        if mouths.is_empty() {
-            return (pieces, mouths);
-        }
-        let left = mouths.iter().fold(pieces.clone(), |left, [from, to]| without(left, *from, *to));
-        let elsewhere: Vec<_> = left.iter().map(|(from, to)| floor([*from, *to])).collect();
-        let [free, all] = [0, 1].map(|n| elsewhere.iter().map(|counts| counts[n]).sum::<f64>());
-        if free <= EMPTY * all { (left, mouths) } else { (pieces, Vec::new()) }
-    }
-}
-
-/// True when a strip lies between two much longer corridors that are no further apart than the faces of a rack; of all it
-/// is known where they lie.
-pub fn is_within_row(strips: &[Strip], placed: &[Beside], n: usize) -> bool {
-    let own = &strips[n];
-    let near = placed[own.direction].touching(own.along, wider(own.across, 2.0 * DEPTH.1));
-    let beside =
-        |other: &&Strip| overlap(other.along, own.along) > own.length() / 2.0 && other.length() > LONGER * own.length();
-    let strips = || near.iter().map(|&n| &strips[n]).filter(beside);
-    let below = strips().map(|s| s.across[1]).filter(|v| *v <= own.across[0] + SAME);
-    let above = strips().map(|s| s.across[0]).filter(|v| *v >= own.across[1] - SAME);
-    above.fold(f64::INFINITY, f64::min) - below.fold(f64::NEG_INFINITY, f64::max) <= DEPTH.1
-}
-
 /// True where rows are racks: in an office, what lies between two corridors are rooms. With where each corridor begins
 /// and ends, along.
 pub fn are_here(rows: &[Row], corridors: &[[f64; 2]]) -> bool {
     let length = |ends: &[f64; 2]| ends[1] - ends[0];
     let racks: f64 = rows.iter().map(|row| length(&row.along)).sum();
     rows.len() >= PLACE.0 && racks >= PLACE.1 * corridors.iter().map(length).sum::<f64>()
-}
-
-/// Of rows that overlap the longest.
-pub fn apart(views: &[Turned], rows: Vec<Row>) -> Vec<Row> {
-    heaviest(views, rows.into_iter().map(|row| (row.length(), row)).collect())
-}
-
-/// Of rows that overlap the one of most weight; the heaviest first.
-pub fn heaviest(views: &[Turned], mut weighed: Vec<(f64, Row)>) -> Vec<Row> {
-    weighed.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut rows: Vec<Row> = weighed.into_iter().map(|(_, row)| row).collect();
-    let polygons: Vec<_> = rows.iter().map(|row| views[row.direction].rectangle(row.along, row.across)).collect();
-    let middles: Vec<_> = (0..).zip(rows.iter().map(|row| row.middle(views))).collect();
-    let (holding, held) = (Near::polygons(&polygons), Near::points(middles.iter().copied()));
-    let mut kept = vec![false; rows.len()];
-    for (n, row) in rows.iter().enumerate() {
-        let own = middles[n].1;
-        let is_kept = |other: &&u32| kept[**other as usize];
-        let within = holding.at(own).iter().filter(is_kept).any(|&other| rows[other as usize].holds(views, own));
-        let around = held.within(&polygons[n]);
-        kept[n] = !within && !around.iter().filter(is_kept).any(|&other| row.holds(views, middles[other as usize].1));
-    }
-    let mut flags = kept.into_iter();
-    rows.retain(|_| flags.next().unwrap_or(false));
-    rows
 }
 
 /// Share of a row's length on which structure lies on one of its view's lines.
@@ -336,34 +80,6 @@ pub fn left_of(pieces: Vec<(f64, f64)>, rows: &[Row], mouths: &[[f64; 2]]) -> Ve
     let mouths = if rows.is_empty() { &[] } else { mouths };
     let taken = rows.iter().map(|row| row.along).chain(mouths.iter().copied());
     taken.fold(pieces, |left, [from, to]| without(left, from, to))
-}
-
-/// Pieces without what lies between two places.
-pub fn without(pieces: Vec<(f64, f64)>, from: f64, to: f64) -> Vec<(f64, f64)> {
-    let cut = pieces.into_iter().flat_map(|(a, b)| [(a, b.min(from)), (a.max(to), b)]);
-    cut.filter(|(a, b)| a < b).collect()
-}
-
-/// From where to where, along `view`, a corridor of another direction crosses the middle of a row; nothing when it
-/// ends before.
-pub fn crossed(
-    view: &Turned,
-    other: &Turned,
-    crossing: &Strip,
-    extent: [f64; 2],
-    across: [f64; 2],
-) -> Option<[f64; 2]> {
-    let ends = across_row(view, other, crossing, across);
-    let within = ends.iter().any(|[s, _]| (extent[0]..=extent[1]).contains(s));
-    within.then(|| ends.map(|[_, u]| u))
-}
-
-/// Where the two sides of a strip of another direction cross the middle of a row: the place along that strip, and along the
-/// row, in whose order they are.
-fn across_row(view: &Turned, other: &Turned, strip: &Strip, across: [f64; 2]) -> [[f64; 2]; 2] {
-    let middle = f64::midpoint(across[0], across[1]);
-    let [one, two] = strip.across.map(|t| view.crossing(other, middle, t));
-    if one[1] <= two[1] { [one, two] } else { [two, one] }
 }
 
 /// True when something stands on both faces of a row over much of it, and hardly anywhere on one alone, but for gaps through

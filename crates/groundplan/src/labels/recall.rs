@@ -7,8 +7,8 @@
 use super::corridors::Strip;
 use super::patches::{Area, Patches};
 use super::period::Period;
-use super::racks::Row;
 use super::rooms::{Bar, Part, Width};
+use super::rows::Row;
 use super::squares::Band;
 use super::stretches;
 use super::sums::Told;

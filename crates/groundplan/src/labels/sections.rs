@@ -5,7 +5,7 @@
 
 use super::closing::{Closing, Uprights};
 use super::look::Look;
-use super::racks::Row;
+use super::rows::Row;
 use super::runs::runs;
 use super::shares::Shares;
 use super::turned::Turned;

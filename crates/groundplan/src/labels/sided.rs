@@ -3,7 +3,8 @@
 
 use super::beside::Beside;
 use super::corridors::{ALIKE, Strip};
-use super::racks::{self, DEPTH, SAME, WAY_IN};
+use super::racks::WAY_IN;
+use super::rows::{self, DEPTH, SAME};
 use super::runs::{close, runs};
 use super::sections::{self, WIDTH};
 use super::turned::Turned;
@@ -82,7 +83,7 @@ fn is_row(view: &Turned, along: [f64; 2], [low, high]: [f64; 2]) -> bool {
     let mut taken: Vec<bool> = blocked.iter().map(|share| *share >= sections::TAKEN).collect();
     close(&mut taken, cells(PARTED));
     let mut stand = runs(&taken, true);
-    stand.retain(|(from, to)| to - from >= cells(racks::SHORTEST));
+    stand.retain(|(from, to)| to - from >= cells(rows::SHORTEST));
     let free: Vec<bool> = blocked.iter().map(|share| *share <= sections::LEFT).collect();
     let is_way = |from: usize, to: usize| runs(&free[from..to], true).iter().any(|(a, b)| b - a >= cells(WIDTH.0));
     stand.windows(2).any(|pair| is_way(pair[0].1, pair[1].0))

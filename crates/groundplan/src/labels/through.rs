@@ -6,7 +6,7 @@
 use super::beside::Beside;
 use super::corridors::{Strip, UNTOLD};
 use super::gates;
-use super::racks::{DEPTH, Row};
+use super::rows::{DEPTH, Row};
 use super::sections::{Columns, WIDTH};
 use super::turned::Turned;
 use super::whole;

@@ -5,7 +5,8 @@ use super::at_walls;
 use super::beside::placed;
 use super::blocks::{self, Standing, are_alike, beside, standing_near};
 use super::corridors::Strip;
-use super::racks::{self, Crossings, Row, SHORTEST, heaviest};
+use super::racks;
+use super::rows::{Crossings, Row, SHORTEST, heaviest};
 use super::turned::Turned;
 
 /// So many times its length a row counts whose two faces are seen.

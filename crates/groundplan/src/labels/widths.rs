@@ -3,7 +3,7 @@
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
 use super::gates::{crossing, leading_across};
-use super::racks::{self, Row};
+use super::rows::{self, Row};
 use super::sections::is_as_bays;
 use super::turned::Turned;
 use super::whole;
@@ -103,7 +103,7 @@ fn is_at_wall(view: &Turned, strip: &Strip) -> bool {
 /// Between which strips there is nothing but walls between halls, where no other crosses them.
 fn between_halls(views: &[Turned], strips: &[Strip]) -> BTreeMap<[usize; 2], bool> {
     let extents: Vec<[f64; 2]> = strips.iter().map(|strip| strip.along).collect();
-    let rows = racks::between(views, strips, &extents);
+    let rows = rows::between(views, strips, &extents);
     let are_walls = whole::are_between_halls(views, &rows.iter().collect::<Vec<_>>());
     let mut halls = BTreeMap::new();
     for (row, is_wall) in rows.iter().zip(are_walls) {
@@ -128,11 +128,11 @@ impl Place {
         halls: &BTreeMap<[usize; 2], bool>,
         direction: usize,
     ) -> Self {
-        let is_aisle = |n: &usize| strips[*n].direction == direction && !racks::is_within_row(strips, placed, *n);
+        let is_aisle = |n: &usize| strips[*n].direction == direction && !rows::is_within_row(strips, placed, *n);
         let aisles: Vec<usize> = (0..strips.len()).filter(is_aisle).collect();
         let own: Vec<Strip> = aisles.iter().map(|&n| strips[n].clone()).collect();
         let extents: Vec<[f64; 2]> = own.iter().map(|strip| strip.along).collect();
-        let rows = racks::between(views, &own, &extents).into_iter();
+        let rows = rows::between(views, &own, &extents).into_iter();
         let rows: Vec<_> = rows.filter_map(|row| row.between.map(|between| (row, between))).collect();
         let is_wall = |between: [usize; 2]| halls.get(&between.map(|n| aisles[n])).is_some_and(|is_wall| *is_wall);
         let walls = rows.iter().map(|(_, between)| is_wall(*between)).collect();
