@@ -5,7 +5,7 @@ use super::columns::{BAY, Column, NARROWED, Side, Walled, count};
 use super::corridors::Strip;
 use super::family::Family;
 use super::runs::{best_pieces, runs};
-use super::turned::{BARRED, IMPASSABLE};
+use super::shares::{BARRED, IMPASSABLE};
 use crate::bits::WORD;
 use crate::ends::sorted;
 use std::ops::Range;

@@ -1,14 +1,19 @@
 //! What a strip's columns are asked: how many of their samples something is true of, and where that is so much.
 
-use super::sums::Rows;
+use super::sums::{Rows, What};
+use super::turned::Turned;
 use crate::bits::Bits;
 use std::ops::Range;
 
+/// Nothing gets through where more than this share is not free, or more than this is barred by a wall, be it thin.
+pub const IMPASSABLE: f64 = 0.7;
+pub const BARRED: f64 = 0.7;
+
 /// Of how many samples of each column something is true.
 pub struct Shares<'a> {
-    pub(super) rows: Rows<'a>,
+    rows: Rows<'a>,
     /// Samples of a column.
-    pub(super) count: u32,
+    count: u32,
 }
 
 impl Shares<'_> {
@@ -78,4 +83,118 @@ impl Shares<'_> {
         }
         low
     }
+}
+
+impl Turned {
+    /// Share of a column that is not free between two places across, 0 to 1; all of it where there is no cell between.
+    pub fn blocked(&self, column: usize, low: f64, high: f64) -> f64 {
+        self.share(What::Blocked, column, low, high)
+    }
+
+    /// Share of the way across a column that is barred: something stands in it, or in the columns beside it.
+    fn barred(&self, column: usize, low: f64, high: f64) -> f64 {
+        self.share(What::Barred, column, low, high)
+    }
+
+    /// True when nothing gets through a column between two places across.
+    pub fn is_closed(&self, column: usize, low: f64, high: f64) -> bool {
+        is_closed(self.blocked(column, low, high), self.barred(column, low, high))
+    }
+
+    /// True when something stands across a column, be it thin.
+    pub fn is_barred(&self, column: usize, low: f64, high: f64) -> bool {
+        self.barred(column, low, high) > BARRED
+    }
+
+    /// Share of a column that is occupied.
+    pub fn occupied(&self, column: usize, low: f64, high: f64) -> f64 {
+        self.share(What::Occupied, column, low, high)
+    }
+
+    fn share(&self, what: What, column: usize, low: f64, high: f64) -> f64 {
+        let of = self.shares_in(what, low, high);
+        of.share(of.at(column))
+    }
+
+    /// How many of a cell's samples, or cells, are asked.
+    fn counts(&self, what: What) -> u32 {
+        if matches!(what, What::Barred) { 1 } else { self.samples.pow(2) }
+    }
+
+    /// [`Turned::blocked`] of all columns.
+    pub fn all_blocked(&self, low: f64, high: f64) -> Vec<f64> {
+        self.shares(What::Blocked, 0..self.size[0], low, high)
+    }
+
+    /// [`Turned::blocked`] of a range of columns.
+    pub fn some_blocked(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
+        self.shares(What::Blocked, columns, low, high)
+    }
+
+    /// The mean of [`Turned::blocked`] over a range of columns; 1 where there are none, as beyond the map nothing is known
+    /// to be free.
+    pub fn mean_blocked(&self, columns: Range<usize>, low: f64, high: f64) -> f64 {
+        let shares = self.some_blocked(columns, low, high);
+        if shares.is_empty() { 1.0 } else { shares.iter().sum::<f64>() / shares.len() as f64 }
+    }
+
+    /// Share of a range of columns in which something stands between two places across.
+    pub fn share_touched(&self, columns: Range<usize>, low: f64, high: f64) -> f64 {
+        let shares = self.some_occupied(columns, low, high);
+        shares.iter().filter(|share| **share > 0.0).count() as f64 / shares.len().max(1) as f64
+    }
+
+    /// [`Turned::occupied`] of a range of columns.
+    pub fn some_occupied(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
+        self.shares(What::Occupied, columns, low, high)
+    }
+
+    /// [`Turned::is_closed`] of a range of columns, the first of which is the first bit.
+    pub fn some_closed(&self, columns: Range<usize>, low: f64, high: f64) -> Bits {
+        let mut closed = self.blocked_where(columns.clone(), low, high, |blocked| blocked > IMPASSABLE);
+        closed |= &self.barred_where(columns, low, high, |barred| barred > BARRED);
+        closed
+    }
+
+    /// In which of a range of columns, the first of which is the first bit, [`Turned::blocked`] is as much as is asked
+    /// for, which all that is more is too.
+    pub fn blocked_where(&self, columns: Range<usize>, low: f64, high: f64, is: impl Fn(f64) -> bool) -> Bits {
+        let of = self.blocked_in(low, high);
+        of.reached(columns, of.least(is))
+    }
+
+    /// The same of [`Turned::barred`].
+    pub fn barred_where(&self, columns: Range<usize>, low: f64, high: f64, is: impl Fn(f64) -> bool) -> Bits {
+        let of = self.barred_in(low, high);
+        of.reached(columns, of.least(is))
+    }
+
+    /// How much of every column is not free between two places across, as it is counted.
+    pub fn blocked_in(&self, low: f64, high: f64) -> Shares<'_> {
+        self.shares_in(What::Blocked, low, high)
+    }
+
+    /// The same of what is occupied.
+    pub fn occupied_in(&self, low: f64, high: f64) -> Shares<'_> {
+        self.shares_in(What::Occupied, low, high)
+    }
+
+    /// The same of what is barred.
+    pub fn barred_in(&self, low: f64, high: f64) -> Shares<'_> {
+        self.shares_in(What::Barred, low, high)
+    }
+
+    fn shares_in(&self, what: What, low: f64, high: f64) -> Shares<'_> {
+        let (from, to) = self.cells(low, high);
+        Shares { rows: self.cells.rows(what, from, to), count: (to - from) as u32 * self.counts(what) }
+    }
+
+    fn shares(&self, what: What, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
+        let of = self.shares_in(what, low, high);
+        of.over(columns).into_iter().map(|samples| of.share(samples)).collect()
+    }
+}
+
+fn is_closed(blocked: f64, barred: f64) -> bool {
+    blocked > IMPASSABLE || barred > BARRED
 }

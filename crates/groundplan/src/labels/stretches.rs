@@ -7,8 +7,8 @@
 use super::barriers;
 use super::corridors::{Strip, UNTOLD};
 use super::runs::best_pieces;
-use super::shares::Shares;
-use super::turned::{IMPASSABLE, Turned};
+use super::shares::{IMPASSABLE, Shares};
+use super::turned::Turned;
 use crate::bits::Bits;
 use std::cell::OnceCell;
 use std::ops::Range;

@@ -7,7 +7,6 @@ use super::look::{BLOCKED, LANES, Look, OCCUPIED, between_rays};
 use super::patches::Patches;
 use super::recall::Key;
 use super::rows::Row;
-use super::shares::Shares;
 use super::summed::{Part, Summed};
 use super::sums::{Cells, Source, Told, What};
 use crate::bits::Bits;
@@ -30,10 +29,6 @@ const NEAR: (f64, f64) = (0.12, 2.0);
 /// the faces of single goods.
 const STRONG: (f64, f64) = (2.0, 0.08);
 
-/// Nothing gets through where more than this share is not free, or more than this is barred by a wall, be it thin.
-pub const IMPASSABLE: f64 = 0.7;
-pub const BARRED: f64 = 0.7;
-
 /// One direction's view of the map. Places along it (u) and across it (v) are metres in the map frame turned by the
 /// direction: u = p.t with t = (cos, sin), v = p.n with n = (-sin, cos).
 pub struct Turned {
@@ -49,9 +44,9 @@ pub struct Turned {
     pub start: [f64; 2],
     /// Cells along and across.
     pub size: [usize; 2],
-    cells: Cells,
+    pub(super) cells: Cells,
     /// Samples along a cell's side.
-    samples: u32,
+    pub(super) samples: u32,
     /// Distance from post to post along its lines, metres, where posts recur.
     pub pitch: Option<f64>,
     /// Offsets of the direction's lines, ascending.
@@ -394,116 +389,8 @@ impl Turned {
         ((u - self.start[0]) / self.cell).round() as usize
     }
 
-    /// Share of a column that is not free between two places across, 0 to 1; all of it where there is no cell between.
-    pub fn blocked(&self, column: usize, low: f64, high: f64) -> f64 {
-        self.share(What::Blocked, column, low, high)
-    }
-
-    /// Share of the way across a column that is barred: something stands in it, or in the columns beside it.
-    fn barred(&self, column: usize, low: f64, high: f64) -> f64 {
-        self.share(What::Barred, column, low, high)
-    }
-
-    /// True when nothing gets through a column between two places across.
-    pub fn is_closed(&self, column: usize, low: f64, high: f64) -> bool {
-        is_closed(self.blocked(column, low, high), self.barred(column, low, high))
-    }
-
-    /// True when something stands across a column, be it thin.
-    pub fn is_barred(&self, column: usize, low: f64, high: f64) -> bool {
-        self.barred(column, low, high) > BARRED
-    }
-
-    /// Share of a column that is occupied.
-    pub fn occupied(&self, column: usize, low: f64, high: f64) -> f64 {
-        self.share(What::Occupied, column, low, high)
-    }
-
-    fn share(&self, what: What, column: usize, low: f64, high: f64) -> f64 {
-        let of = self.shares_in(what, low, high);
-        of.share(of.at(column))
-    }
-
-    /// How many of a cell's samples, or cells, are asked.
-    fn counts(&self, what: What) -> u32 {
-        if matches!(what, What::Barred) { 1 } else { self.samples.pow(2) }
-    }
-
-    /// [`Turned::blocked`] of all columns.
-    pub fn all_blocked(&self, low: f64, high: f64) -> Vec<f64> {
-        self.shares(What::Blocked, 0..self.size[0], low, high)
-    }
-
-    /// [`Turned::blocked`] of a range of columns.
-    pub fn some_blocked(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
-        self.shares(What::Blocked, columns, low, high)
-    }
-
-    /// The mean of [`Turned::blocked`] over a range of columns; 1 where there are none, as beyond the map nothing is known
-    /// to be free.
-    pub fn mean_blocked(&self, columns: Range<usize>, low: f64, high: f64) -> f64 {
-        let shares = self.some_blocked(columns, low, high);
-        if shares.is_empty() { 1.0 } else { shares.iter().sum::<f64>() / shares.len() as f64 }
-    }
-
-    /// Share of a range of columns in which something stands between two places across.
-    pub fn share_touched(&self, columns: Range<usize>, low: f64, high: f64) -> f64 {
-        let shares = self.some_occupied(columns, low, high);
-        shares.iter().filter(|share| **share > 0.0).count() as f64 / shares.len().max(1) as f64
-    }
-
-    /// [`Turned::occupied`] of a range of columns.
-    pub fn some_occupied(&self, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
-        self.shares(What::Occupied, columns, low, high)
-    }
-
-    /// [`Turned::is_closed`] of a range of columns, the first of which is the first bit.
-    pub fn some_closed(&self, columns: Range<usize>, low: f64, high: f64) -> Bits {
-        let mut closed = self.blocked_where(columns.clone(), low, high, |blocked| blocked > IMPASSABLE);
-        closed |= &self.barred_where(columns, low, high, |barred| barred > BARRED);
-        closed
-    }
-
-    /// In which of a range of columns, the first of which is the first bit, [`Turned::blocked`] is as much as is asked
-    /// for, which all that is more is too.
-    pub fn blocked_where(&self, columns: Range<usize>, low: f64, high: f64, is: impl Fn(f64) -> bool) -> Bits {
-        let of = self.blocked_in(low, high);
-        of.reached(columns, of.least(is))
-    }
-
-    /// The same of [`Turned::barred`].
-    pub fn barred_where(&self, columns: Range<usize>, low: f64, high: f64, is: impl Fn(f64) -> bool) -> Bits {
-        let of = self.barred_in(low, high);
-        of.reached(columns, of.least(is))
-    }
-
-    /// How much of every column is not free between two places across, as it is counted.
-    pub fn blocked_in(&self, low: f64, high: f64) -> Shares<'_> {
-        self.shares_in(What::Blocked, low, high)
-    }
-
-    /// The same of what is occupied.
-    pub fn occupied_in(&self, low: f64, high: f64) -> Shares<'_> {
-        self.shares_in(What::Occupied, low, high)
-    }
-
-    /// The same of what is barred.
-    pub fn barred_in(&self, low: f64, high: f64) -> Shares<'_> {
-        self.shares_in(What::Barred, low, high)
-    }
-
-    fn shares_in(&self, what: What, low: f64, high: f64) -> Shares<'_> {
-        let (from, to) = self.cells(low, high);
-        Shares { rows: self.cells.rows(what, from, to), count: (to - from) as u32 * self.counts(what) }
-    }
-
-    fn shares(&self, what: What, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {
-        let of = self.shares_in(what, low, high);
-        of.over(columns).into_iter().map(|samples| of.share(samples)).collect()
-    }
-
     /// The cells across between two places: from, to.
-    fn cells(&self, low: f64, high: f64) -> (usize, usize) {
+    pub(super) fn cells(&self, low: f64, high: f64) -> (usize, usize) {
         let at = |v: f64| rounded(((v - self.start[1]) / self.cell).clamp(0.0, self.size[1] as f64)) as usize;
         (at(low), at(high).max(at(low)))
     }
@@ -526,10 +413,6 @@ fn add_thin(row: &mut [u8], [lanes, looks]: [usize; 2], look_along: impl Fn(usiz
 pub fn least_sine(views: &[Turned], least: f64) -> f64 {
     let sines = views.iter().flat_map(|one| views.iter().map(|other| libm::sin(one.angle - other.angle).abs()));
     sines.filter(|sine| *sine >= least).fold(1.0, f64::min)
-}
-
-fn is_closed(blocked: f64, barred: f64) -> bool {
-    blocked > IMPASSABLE || barred > BARRED
 }
 
 /// The corners of a rectangle of places, counter-clockwise.
