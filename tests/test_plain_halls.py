@@ -26,12 +26,26 @@ def test_a_plain_hall_has_the_junctions_of_its_plan(seed: int) -> None:
     assert {kind: found[kind] for kind in plain.KINDS} == {kind: plan[kind] for kind in plain.KINDS}
 
 
-def test_most_have_them_where_a_lidar_misses_one_pixel_in_five() -> None:
-    def is_right(seed: int) -> bool:
-        plan, found = plain.planned(plain.hall(seed)), plain.found_as_hit(seed)
-        return all(found[kind] == plan[kind] for kind in plain.KINDS)
+def is_right_as_hit(seed: int) -> bool:
+    """Whether it has them where a lidar misses one pixel in five."""
+    plan, found = plain.planned(plain.hall(seed)), plain.found_as_hit(seed)
+    return all(found[kind] == plan[kind] for kind in plain.KINDS)
 
-    assert np.mean([is_right(seed) for seed in range(48)]) >= 0.85
+
+def test_most_have_them_where_a_lidar_misses_one_pixel_in_five() -> None:
+    assert np.mean([is_right_as_hit(seed) for seed in range(48)]) >= 0.9
+
+
+@pytest.mark.parametrize("seed", [44, 74, 184, 270, 306])
+def test_aisles_end_at_a_wall_one_pixel_thick_of_which_a_fifth_was_not_hit(seed: int) -> None:
+    assert plain.planned(plain.hall(seed))["end"] > 0
+    assert is_right_as_hit(seed)
+
+
+@pytest.mark.parametrize("seed", [8, 50, 66, 158, 248, 294])
+def test_no_way_leads_within_an_outline_of_which_a_fifth_was_not_hit(seed: int) -> None:
+    assert plain.hall(seed).look == "hollow"
+    assert is_right_as_hit(seed)
 
 
 def test_racks_in_plain_halls_are_counted_and_sure() -> None:

@@ -10,6 +10,7 @@ use crate::ends::{overlap, shared, sorted, wider};
 use crate::grid::{angle_between, turned};
 use crate::subdivision::distance;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Where corridors meet.
 #[derive(Clone, Debug, PartialEq)]
@@ -284,6 +285,8 @@ const SHUT: f64 = 1.0;
 /// What closes it is this deep, metres, and lies across this share of its width.
 const DEEP: f64 = 0.4;
 const ACROSS: f64 = 0.5;
+/// A thin wall stands in so many columns at most, where a border of cells parts it.
+const THIN: i64 = 2;
 
 /// Dead ends: the places along at which a corridor that meets no other there is closed by something seen. Where it
 /// runs into the unknown, or opens into a hall, it has no end, nor where it goes on beside itself, as one that bends does.
@@ -354,9 +357,20 @@ pub fn closed(view: &Turned, strip: &Strip, side: usize, look: f64) -> Option<f6
     let [low, high] = inner(strip);
     let first = columns.into_iter().find(|&c| view.is_closed(c as usize, low, high))?;
     // A wall that is not quite square to the corridor shows in several columns.
-    let deep = (-cells(DEEP)..=cells(DEEP)).map(|step| first + step).filter(|c| (0..=last).contains(c));
+    let deep = (first - cells(DEEP)).max(0)..=(first + cells(DEEP)).min(last);
     let across: f64 = deep.clone().map(|c| view.occupied(c as usize, low, high)).sum();
-    // Of one that is thinner than the samples are apart hardly any lies on a wall.
-    let is_wall = across >= ACROSS || deep.into_iter().any(|c| view.is_barred(c as usize, low, high));
+    // Of one that is thinner than the samples are apart hardly any lies on a wall, and not all of a thin one may be hit.
+    let is_wall = across >= ACROSS
+        || deep.clone().any(|c| view.is_barred(c as usize, low, high))
+        || deep.clone().any(|c| is_hit(view, c as usize..(c + THIN).min(last + 1) as usize, [low, high]));
     is_wall.then(|| view.along(first as usize) + if sign < 0.0 { view.cell } else { 0.0 })
+}
+
+/// True when something stands in some columns over as much of the way across as a wall does, be it ever so thin.
+fn is_hit(view: &Turned, columns: Range<usize>, [low, high]: [f64; 2]) -> bool {
+    let count = ((high - low) / view.cell).round().max(1.0);
+    let place = |n: usize| low + (high - low) * n as f64 / count;
+    let stands =
+        |n: &usize| view.some_occupied(columns.clone(), place(*n), place(n + 1)).iter().any(|share| *share > 0.0);
+    (0..count as usize).filter(stands).count() as f64 >= ACROSS * count
 }

@@ -40,8 +40,9 @@ pub fn is_within_outline(view: &Turned, strips: &[Strip], placed: &[Beside], n: 
     let own = &strips[n];
     let columns = view.column(own.along[0])..view.column(own.along[1]);
     let is_closed = |side: f64| {
-        let stands = view.some_occupied(columns.clone(), side - OUTLINE, side + OUTLINE);
-        let open: Vec<bool> = stands.iter().map(|share| *share == 0.0).collect();
+        // What of it was not hit is as little floor as what was.
+        let blocked = view.some_blocked(columns.clone(), side - OUTLINE, side + OUTLINE);
+        let open: Vec<bool> = blocked.iter().map(|share| *share == 0.0).collect();
         runs(&open, true).iter().all(|(from, to)| ((to - from) as f64) * view.cell < WAY_IN)
     };
     let is_before_floor = |end: [f64; 2]| {
