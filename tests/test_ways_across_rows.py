@@ -125,3 +125,29 @@ def test_ways_staggered_from_row_to_row_need_not_be_as_wide_as_those_at_the_wall
     assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 14
     across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
     assert sorted(across) == pytest.approx([3.8] * 4 + [5.0, 6.2], abs=0.2)
+
+
+def pallets(ends: tuple[int, int], count: int, taken: list[set[int]], off: int = 0) -> Picture:
+    """A hall with a rack of bays of 2.7 m on posts in each row, between ways as wide as given, in pixels.
+
+    Of each row goods stand in the bays given, two pallets in each; posts of every other row stand so many pixels off.
+    """
+    bay, depth = 54, 22
+    picture = hall(sum(ends) + count * bay, len(taken) * (AISLE + depth) + AISLE)
+    for row, bays in enumerate(taken):
+        low = 20 + AISLE + row * (AISLE + depth)
+        for post in range(count + 1):
+            x = 20 + ends[0] + post * bay + row % 2 * off
+            for y in (low, low + depth - 2):
+                picture[y : y + 2, x - 1 : x + 1] = 0
+        for x in (20 + ends[0] + n * bay + at for n in bays for at in (3, 28)):
+            picture[low + 1 : low + depth - 1, x : x + 23] = 0
+    return picture
+
+
+@pytest.mark.parametrize("seed", [0, 3, 4, 5])
+def test_ways_as_wide_as_bays_lead_past_the_ends_of_rows_though_the_last_bays_are_empty(seed: int) -> None:
+    draws = np.random.default_rng(seed)
+    taken = [set(np.flatnonzero(draws.random(8) < 0.5).tolist()) for _ in range(2)]
+    survey = groundplan.survey(pallets((54, 54), 8, taken, off=4), resolution=RESOLUTION)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 2

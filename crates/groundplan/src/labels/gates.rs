@@ -43,7 +43,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     }
     let between_racks = through.of_rows_alone();
     let mut sure = Widths::of(views, strips.iter().filter(|strip| !strip.bays).chain(&gates));
-    let through = through.find(&mut sure);
+    let through = through.find(strips, &mut sure);
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
     doubtful.retain(|gate| sure[gate.direction].is_empty() || sure[gate.direction].have(gate.width(), None));
     gates.extend(doubtful);

@@ -60,7 +60,8 @@ const BOUNDED: f64 = 0.8;
 /// Widths are counted in such steps, metres.
 const STEP: f64 = 0.1;
 /// What crosses all rows of a place is a way when it is as wide as other ways and less likely than this by chance; when
-/// none is known; and when it has another width than those.
+/// none is known; and when it has another width than those. Past the ends of all rows there are ways in most halls, and
+/// LIKELY is enough.
 const ALIKE: f64 = 0.05;
 const FIRST: f64 = 0.01;
 const OTHER: f64 = 0.005;
@@ -78,6 +79,8 @@ pub struct Through<'a> {
     below: Vec<Vec<usize>>,
     /// Which of the rows are walls between halls.
     walls: Vec<bool>,
+    /// For each row, which of its ends are at a wall, when that is known.
+    walled: Vec<[bool; 2]>,
     /// For each direction and each width in steps, how many places of its rows are open, and of how many.
     all: Vec<Vec<[f64; 2]>>,
 }
@@ -94,13 +97,15 @@ impl<'a> Through<'a> {
         let next = |side: usize| rows.iter().map(|row| beside[&row.between[side]][side].clone()).collect();
         let (below, above) = (next(0), next(1));
         let walls = whole::are_between_halls(views, &rows.iter().map(|seen| seen.row).collect::<Vec<_>>());
-        let mut made = Self { rows, open, above, below, walls, all: vec![Vec::new(); views.len()] };
+        let all = vec![Vec::new(); views.len()];
+        let mut made = Self { rows, open, above, below, walls, walled: Vec::new(), all };
         made.count();
         made
     }
 
     /// The ways, where those of known widths are, each through one row after another.
-    pub fn find(mut self, widths: &mut [Widths]) -> Vec<Strip> {
+    pub fn find(mut self, strips: &[Strip], widths: &mut [Widths]) -> Vec<Strip> {
+        self.walled = self.rows.iter().map(|seen| [0, 1].map(|side| seen.is_at_wall(strips, side))).collect();
         let mut left = Vec::new();
         for (n, open) in self.open.iter().enumerate() {
             for &ends in open {
@@ -130,7 +135,11 @@ impl<'a> Through<'a> {
                     .collect();
             }
             for way in &ways[known..] {
-                widths[self.rows[way.rows[0]].views[1].direction].add(way.width() + BETWEEN_CELLS);
+                let first = &self.rows[way.rows[0]];
+                // What passes the ends is as wide as the hall leaves: if that is a bay's width it tells no others.
+                if !(first.is_as_bays(way.ends) && self.is_past_ends(way)) {
+                    widths[first.views[1].direction].add(way.width() + BETWEEN_CELLS);
+                }
                 self.take(way);
             }
             self.count();
@@ -282,12 +291,26 @@ impl<'a> Through<'a> {
         let known = &widths[other.direction];
         let limit = match (self.is_whole(common), known.have(common.width() + BETWEEN_CELLS, view.pitch)) {
             (false, _) => SOME,
+            (true, _) if self.is_past_ends(common) => LIKELY,
             (true, true) => ALIKE,
             (true, false) if known.is_empty() => FIRST,
             (true, false) if self.rows[common.rows[0]].is_as_bays(common.ends) => SOME,
             (true, false) => OTHER,
         };
         common.chance < limit
+    }
+
+    /// True when it lies between the ends of all its rows, which are in line, and a wall that ends them.
+    fn is_past_ends(&self, common: &Common) -> bool {
+        let is_last = |n: usize, side: usize| {
+            let seen = &self.rows[n];
+            let ends = seen.stretch(common.ends);
+            let open = self.open[n].iter().map(|&open| seen.stretch(open)).find(|&open| overlap(open, ends) > 0.0);
+            self.walled[n][side]
+                && (ends[side] - seen.row.along[side]).abs() <= SLACK
+                && open.is_some_and(|open| (open[1 - side] - ends[1 - side]).abs() <= SLACK)
+        };
+        [0, 1].into_iter().any(|side| common.rows.iter().all(|&n| is_last(n, side)))
     }
 
     /// True when it leads through the first row of its place and the last one.
