@@ -28,17 +28,29 @@ def racks_of_legs(seed: int) -> Picture:
 
     A way of 4.2 m, as wide as two bays, lies between the blocks, and one of 3.5 m at either wall.
     """
+    return legs(seed, full=0.6, aisle=AISLE, depth=DEPTH, rows=2, blocks=(BAYS,) * 2, way=84, end=70)
+
+
+def rows_as_deep_as_aisles_are_wide(seed: int) -> Picture:
+    """A hall of 41.2 m by 15.4 m with three rows in three blocks of four bays, three of four empty: 2.2 m, as are aisles."""
+    return legs(seed, full=0.28, aisle=44, depth=22, rows=3, blocks=(4,) * 3, way=80, end=80)
+
+
+def legs(
+    seed: int, *, full: float, aisle: int, depth: int, rows: int, blocks: tuple[int, ...], way: int, end: int
+) -> Picture:
+    """Rows of two racks back to back, in blocks of so many bays, so many of which are full; the others show their legs."""
     draws = np.random.default_rng(seed)
-    end, way, block = 70, 84, BAY * BAYS
-    picture = hall(2 * (end + block) + way, 3 * AISLE + 4 * DEPTH)
-    for row in (20 + AISLE, 20 + 2 * AISLE + 2 * DEPTH):
-        for left in (20 + end, 20 + end + block + way):
-            for rack in (row, row + DEPTH):
-                for bay in range(BAYS + 1):
-                    x = min(max(left + bay * BAY - 1, left), left + block - 2)
-                    picture[rack : rack + 2, x : x + 2] = picture[rack + DEPTH - 2 : rack + DEPTH, x : x + 2] = 0
-                for x in (left + BAY * np.flatnonzero(draws.random(BAYS) < 0.6)).tolist():
-                    picture[rack + 1 : rack + DEPTH - 1, x + 2 : x + BAY - 2] = 0
+    lefts = [20 + end + BAY * sum(blocks[:n]) + way * n for n in range(len(blocks))]
+    picture = hall(2 * end + BAY * sum(blocks) + way * (len(blocks) - 1), (rows + 1) * aisle + 2 * rows * depth)
+    for row in (20 + aisle + n * (aisle + 2 * depth) for n in range(rows)):
+        for left, bays in zip(lefts, blocks, strict=True):
+            for rack in (row, row + depth):
+                for bay in range(bays + 1):
+                    x = min(max(left + bay * BAY - 1, left), left + bays * BAY - 2)
+                    picture[rack : rack + 2, x : x + 2] = picture[rack + depth - 2 : rack + depth, x : x + 2] = 0
+                for x in (left + BAY * np.flatnonzero(draws.random(bays) < full)).tolist():
+                    picture[rack + 1 : rack + depth - 1, x + 2 : x + BAY - 2] = 0
     return picture
 
 
@@ -62,6 +74,14 @@ def test_a_way_through_two_half_empty_rows_is_told_by_the_legs_that_do_not_stand
     assert sorted(way["axis"][0][0] for way in across) == pytest.approx([2.75, 19.2, 35.65], abs=0.3)
     crossings = [junction["type"] for junction in survey.of_kind("junction")]
     assert sorted(crossings) == ["L"] * 4 + ["T"] * 4 + ["X"]
+
+
+@pytest.mark.parametrize("seed", [9, 20, 138])
+def test_posts_that_recur_across_rows_as_deep_as_aisles_are_wide_make_no_bays_of_the_aisles(seed: int) -> None:
+    survey = groundplan.survey(rows_as_deep_as_aisles_are_wide(seed), resolution=RESOLUTION)
+    assert [way["width"] for way in survey.of_kind("corridor")] == pytest.approx([2.2] * 4 + [4.0] * 4, abs=0.2)
+    crossings = [junction["type"] for junction in survey.of_kind("junction")]
+    assert sorted(crossings) == ["L"] * 4 + ["T"] * 8 + ["X"] * 4
 
 
 @pytest.mark.parametrize(

@@ -21,8 +21,8 @@ const ENTERS: f64 = 0.35;
 /// A strip is a way through all the rows that it finds free when, by how seldom each of them is free elsewhere, fewer
 /// such than this would be expected of all places; and one that is like bays only then.
 const EXPECTED: (f64, f64) = (0.05, 0.005);
-/// Where posts recur along the rows, what crosses them is no more than so many times as long as the shorter of the two
-/// corridors beside a row: short ones between the goods of racks do not make bays of the aisles.
+/// Where posts recur along the rows, and not across them too, what crosses them is no more than so many times as long as
+/// the shorter of the two corridors beside a row: short ones between the goods of racks do not make bays of the aisles.
 const LONGER: f64 = 4.0;
 /// Uprights leave so much of a strip that goes on between them.
 const LEFT: f64 = 0.5;
@@ -156,7 +156,7 @@ fn crossed(
             let aisles = between.map(|n| &strips[n]);
             // Then the rows might as well be what lies between two ways across the rows.
             let shorter = aisles.iter().map(|aisle| aisle.length()).fold(f64::INFINITY, f64::min);
-            let times = if view.pitch.is_some() { LONGER } else { 1.0 };
+            let times = if view.pitch.is_some() && other.pitch.is_none() { LONGER } else { 1.0 };
             let judged = near.into_iter().filter(|&n| strips[n].length() < times * shorter);
             // Where no bays are known, what is wider is no bay.
             let is_narrow = |n: usize| is_narrow(strips, &placed, n, aisles);
