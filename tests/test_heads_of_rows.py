@@ -10,8 +10,13 @@ import groundplan
 RESOLUTION = 0.1
 
 
-def hall(early: tuple[float, ...], boxes: tuple[tuple[float, float], ...] = ()) -> groundplan.Survey:
-    """40 m by 3 m and 4.5 m for each row: racks 1.5 m deep from the west wall to 3 m and more before the east wall."""
+def hall(
+    early: tuple[float, ...], boxes: tuple[tuple[float, float], ...] = (), empty: tuple[int, ...] = ()
+) -> groundplan.Survey:
+    """40 m by 3 m and 4.5 m for each row: racks 1.5 m deep from the west wall to 3 m and more before the east wall.
+
+    Of some rows the last bay of 2.5 m is empty but for its legs.
+    """
     depth = 3.0 + 4.5 * len(early)
     y, x = np.mgrid[-1.0 : depth + 1.0 : RESOLUTION, -1.0:41.0:RESOLUTION]
     picture = np.full(x.shape, 205, dtype=np.uint8)
@@ -20,6 +25,11 @@ def hall(early: tuple[float, ...], boxes: tuple[tuple[float, float], ...] = ()) 
     for row, by in enumerate(early):
         low = 3.0 + 4.5 * row
         picture[(x > 0) & (x < 37 - by) & (y > low) & (y < low + 1.5)] = 0
+    for row in empty:
+        low = 3.0 + 4.5 * row
+        within = (x > 34.5) & (x < 37) & (y > low) & (y < low + 1.5)
+        legs = (x > 36.8) & ((y < low + 0.2) | (y > low + 1.3))
+        picture[within & ~legs] = 254
     for at in boxes:
         picture[(abs(x - at[0]) < 0.2) & (abs(y - at[1]) < 0.2)] = 0
     return groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION)
@@ -31,6 +41,15 @@ def test_aisles_meet_the_way_along_the_wall_before_rows_of_any_length(early: tup
     kinds = sorted(label["type"] for label in survey.of_kind("junction") if label["type"] != "end")
     assert kinds == ["L", "L"] + ["T"] * (len(early) - 1)
     assert all(abs(label["at"][0] - 39.5) < 0.3 for label in survey.of_kind("junction") if label["type"] != "end")
+
+
+@pytest.mark.parametrize("empty", [(0, 1, 3), (0, 1, 2, 3), (1, 2, 3, 4)])
+def test_the_way_along_the_wall_is_known_though_the_last_bays_are_empty(empty: tuple[int, ...]) -> None:
+    survey = hall((0.0,) * 5, empty=empty)
+    ways = [label for label in survey.of_kind("corridor") if label["name"].startswith("C")]
+    assert [way["width"] for way in ways] == pytest.approx([3.0], abs=0.2)
+    kinds = sorted(label["type"] for label in survey.of_kind("junction") if label["type"] != "end")
+    assert kinds == ["L"] * 2 + ["T"] * 4
 
 
 def test_boxes_on_both_faces_of_a_row_are_not_its_end() -> None:

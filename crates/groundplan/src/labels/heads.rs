@@ -1,5 +1,5 @@
-//! Ways along a wall before the heads of rows: where rows end each at its own place, what lies between them and the wall
-//! has no line for its other side, and yet the aisles between the rows lead there.
+//! Ways along a wall before the heads of rows: where rows end each at its own place, or their last bays are empty, what lies
+//! between them and the wall has no line for its other side, or a wrong one, and yet the aisles between the rows lead there.
 
 use super::Evidence;
 use super::beside::{Beside, placed};
@@ -31,8 +31,6 @@ const SIDES: f64 = 0.2;
 const WALL: f64 = 0.3;
 /// Where no row ends more than so many pitches before the wall it may be by their last bays, which are empty.
 const BAY: f64 = 1.15;
-/// The longest row and the shortest one differ by so much, metres: where they end alike, a line is the way's side.
-const APART: f64 = 1.2;
 /// No more than this share of the way is not free.
 const CLEAR: f64 = 0.1;
 
@@ -128,7 +126,7 @@ impl Heads<'_> {
                     frees.fold([f64::INFINITY, 0.0], |[low, high], free| [low.min(free), high.max(free)]);
                 // Empty bays have their uprights: where one row has none for longer, it ends there.
                 let are_bays = self.view.pitch.is_some_and(|pitch| most <= BAY * pitch);
-                if most - width >= APART && !are_bays {
+                if !are_bays {
                     found.extend(self.way(&chain[from..to], wall, width));
                 }
             }
