@@ -32,14 +32,14 @@ def racks_of_legs(seed: int) -> Picture:
 
 
 def rows_as_deep_as_aisles_are_wide(seed: int) -> Picture:
-    """A hall of 41.2 m by 15.4 m with three rows in three blocks of four bays, three of four empty: 2.2 m, as are aisles."""
+    """Three rows in three blocks: 2.2 m deep, as aisles are wide, and most bays empty."""
     return legs(seed, full=0.28, aisle=44, depth=22, rows=3, blocks=(4,) * 3, way=80, end=80)
 
 
 def legs(
     seed: int, *, full: float, aisle: int, depth: int, rows: int, blocks: tuple[int, ...], way: int, end: int
 ) -> Picture:
-    """Rows of two racks back to back, in blocks of so many bays, so many of which are full; the others show their legs."""
+    """Rows of two racks back to back, in blocks of so many bays: a share is full, the others show their legs."""
     draws = np.random.default_rng(seed)
     lefts = [20 + end + BAY * sum(blocks[:n]) + way * n for n in range(len(blocks))]
     picture = hall(2 * end + BAY * sum(blocks) + way * (len(blocks) - 1), (rows + 1) * aisle + 2 * rows * depth)
