@@ -36,21 +36,35 @@ def rows_as_deep_as_aisles_are_wide(seed: int) -> Picture:
     return legs(seed, full=0.28, aisle=44, depth=22, rows=3, blocks=(4,) * 3, way=80, end=80)
 
 
+def posts_of_every_second_bay(bay: int) -> Picture:
+    """A hall of 28 m with two rows of eight bays, five full, and of the posts of one bay both are hardly ever seen."""
+    return legs(15, bay=bay, full=0.6, aisle=72, depth=18, rows=2, blocks=(8,), way=0, end=80)
+
+
 def legs(
-    seed: int, *, full: float, aisle: int, depth: int, rows: int, blocks: tuple[int, ...], way: int, end: int
+    seed: int,
+    *,
+    full: float,
+    aisle: int,
+    depth: int,
+    rows: int,
+    blocks: tuple[int, ...],
+    way: int,
+    end: int,
+    bay: int = BAY,
 ) -> Picture:
     """Rows of two racks back to back, in blocks of so many bays: a share is full, the others show their legs."""
     draws = np.random.default_rng(seed)
-    lefts = [20 + end + BAY * sum(blocks[:n]) + way * n for n in range(len(blocks))]
-    picture = hall(2 * end + BAY * sum(blocks) + way * (len(blocks) - 1), (rows + 1) * aisle + 2 * rows * depth)
+    lefts = [20 + end + bay * sum(blocks[:n]) + way * n for n in range(len(blocks))]
+    picture = hall(2 * end + bay * sum(blocks) + way * (len(blocks) - 1), (rows + 1) * aisle + 2 * rows * depth)
     for row in (20 + aisle + n * (aisle + 2 * depth) for n in range(rows)):
         for left, bays in zip(lefts, blocks, strict=True):
             for rack in (row, row + depth):
-                for bay in range(bays + 1):
-                    x = min(max(left + bay * BAY - 1, left), left + bays * BAY - 2)
+                for post in range(bays + 1):
+                    x = min(max(left + post * bay - 1, left), left + bays * bay - 2)
                     picture[rack : rack + 2, x : x + 2] = picture[rack + depth - 2 : rack + depth, x : x + 2] = 0
-                for x in (left + BAY * np.flatnonzero(draws.random(bays) < full)).tolist():
-                    picture[rack + 1 : rack + depth - 1, x + 2 : x + BAY - 2] = 0
+                for x in (left + bay * np.flatnonzero(draws.random(bays) < full)).tolist():
+                    picture[rack + 1 : rack + depth - 1, x + 2 : x + bay - 2] = 0
     return picture
 
 
@@ -82,6 +96,13 @@ def test_posts_that_recur_across_rows_as_deep_as_aisles_are_wide_make_no_bays_of
     assert [way["width"] for way in survey.of_kind("corridor")] == pytest.approx([2.2] * 4 + [4.0] * 4, abs=0.2)
     crossings = [junction["type"] for junction in survey.of_kind("junction")]
     assert sorted(crossings) == ["L"] * 4 + ["T"] * 8 + ["X"] * 4
+
+
+@pytest.mark.parametrize("bay", [50, 54])
+def test_two_bays_are_not_taken_for_one_where_posts_are_seen_at_every_second(bay: int) -> None:
+    survey = groundplan.survey(posts_of_every_second_bay(bay), resolution=RESOLUTION)
+    assert [way["width"] for way in survey.of_kind("corridor")] == pytest.approx([3.6] * 3 + [4.0] * 2, abs=0.25)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 2
 
 
 @pytest.mark.parametrize(

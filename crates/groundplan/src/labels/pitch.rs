@@ -30,6 +30,11 @@ const CONTRAST: f64 = 8.0;
 const PARTS: f64 = 2.0;
 /// Of several lags the shortest that is this much of the strongest is the pitch: the others are its multiples.
 const FUNDAMENTAL: f64 = 0.7;
+/// No bay is longer than beams are, metres: what is told to be longer is two of them, or one and a half with a leg in each
+/// one's middle. Where most are full few posts are seen from one to the next: the one stands out by the other factor.
+const LONGEST: f64 = 3.9;
+const BAYS: [f64; 2] = [2.0, 1.5];
+const PARTIAL: f64 = 6.0;
 /// Of what recurs along faces at least this share of the pairs has a row beside it from one to the other, and of those twice
 /// as far apart.
 const ALONG: [f64; 2] = [0.15, 0.05];
@@ -81,7 +86,7 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     let faces = fold(lines.len(), threads, empty, |sums, n| add(sums, &of_line(n)), |sums, more| add(sums, &more));
     let faces: Vec<f64> = faces.into_iter().map(f64::from).collect();
     let found: Vec<(f64, f64)> = (first..=last)
-        .zip(all)
+        .zip(&all)
         .map(|(lag, all)| {
             let is_along = (0..2).all(|n| excess(&faces, n + 1, lag).0 >= ALONG[n] * all[n].0);
             let [once, twice] = all;
@@ -92,7 +97,23 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     let tops: Vec<usize> = (0..found.len()).filter(|&n| found[n].1 >= CONTRAST && top(n)).collect();
     let most = tops.iter().map(|&n| found[n].0).fold(0.0, f64::max);
     let pitch = first + tops.into_iter().find(|&n| found[n].0 >= FUNDAMENTAL * most)?;
-    Some(between_steps(&sums, pitch) * STEP)
+    let clear = |lag: usize| {
+        let [once, twice] = all[lag - first];
+        once.1.min(twice.1)
+    };
+    Some(between_steps(&sums, one_bay(pitch, clear)) * STEP)
+}
+
+/// The lag of one bay, where that of some is longer than any; by how clearly each lag stands out.
+fn one_bay(lag: usize, clear: impl Fn(usize) -> f64) -> usize {
+    if lag as f64 * STEP <= LONGEST {
+        return lag;
+    }
+    let clearest = |bays: f64| {
+        let middle = (lag as f64 / bays).round() as usize;
+        (middle - POST..=middle + POST).max_by(|one, two| clear(*one).total_cmp(&clear(*two)))
+    };
+    BAYS.into_iter().filter_map(clearest).find(|&bay| clear(bay) >= PARTIAL).unwrap_or(lag)
 }
 
 /// How many pairs of specks on a line, of those so far apart, are as many steps apart with a row beside them.
