@@ -31,6 +31,9 @@ const SIDES: f64 = 0.2;
 const WALL: f64 = 0.3;
 /// Where no row ends more than so many pitches before the wall it may be by their last bays, which are empty.
 const BAY: f64 = 1.15;
+/// The longest row and what fills the shortest one differ by so much, metres: where rows end alike and are full up to
+/// there, a line is the way's side.
+const APART: f64 = 1.2;
 /// No more than this share of the way is not free.
 const CLEAR: f64 = 0.1;
 
@@ -106,27 +109,29 @@ impl Heads<'_> {
         let before = |row: &Between| {
             let [one, two] = row.aisles.map(|n| self.wall(n));
             let (one, two) = (one?, two?);
-            let free = self.free(row, f64::midpoint(one, two));
-            ((one - two).abs() <= IN_LINE && free >= least).then_some((f64::midpoint(one, two), free))
+            let [free, empty] = self.free(row, f64::midpoint(one, two));
+            ((one - two).abs() <= IN_LINE && free >= least).then_some((f64::midpoint(one, two), free, empty))
         };
-        let ends: Vec<Option<(f64, f64)>> = chain.iter().map(before).collect();
+        let ends: Vec<Option<(f64, f64, f64)>> = chain.iter().map(before).collect();
         let mut found = Vec::new();
         let mut from = 0;
         while from < chain.len() {
             let goes_on = |n: &usize| {
-                let wall = |n: usize| ends[n].map(|(wall, _)| wall);
+                let wall = |n: usize| ends[n].map(|(wall, ..)| wall);
                 wall(*n).zip(wall(from)).is_some_and(|(one, two)| (one - two).abs() <= IN_LINE)
             };
             let to = (from..chain.len()).find(|n| !goes_on(n)).unwrap_or(chain.len());
             if to - from >= ROWS {
-                let of = |value: fn((f64, f64)) -> f64| ends[from..to].iter().flatten().map(move |&end| value(end));
-                let wall = of(|(wall, _)| wall).sum::<f64>() / (to - from) as f64;
-                let frees = of(|(_, free)| free);
+                let of =
+                    |value: fn((f64, f64, f64)) -> f64| ends[from..to].iter().flatten().map(move |&end| value(end));
+                let wall = of(|(wall, ..)| wall).sum::<f64>() / (to - from) as f64;
+                let frees = of(|(_, free, _)| free);
+                let empty = of(|(.., empty)| empty).fold(0.0, f64::max);
                 let [width, most] =
                     frees.fold([f64::INFINITY, 0.0], |[low, high], free| [low.min(free), high.max(free)]);
                 // Empty bays have their uprights: where one row has none for longer, it ends there.
                 let are_bays = self.view.pitch.is_some_and(|pitch| most <= BAY * pitch);
-                if !are_bays {
+                if empty - width >= APART && !are_bays {
                     found.extend(self.way(&chain[from..to], wall, width));
                 }
             }
@@ -140,14 +145,14 @@ impl Heads<'_> {
         junctions::closed(self.view, &self.strips[aisle], self.side, SHORT + self.parameters.labels_max_width)
     }
 
-    /// How far a row ends before a wall, metres; as far as is looked where nothing of it stands.
-    fn free(&self, row: &Between, wall: f64) -> f64 {
+    /// How far a row ends before a wall, metres, and what fills it does; as far as is looked where nothing of it stands.
+    fn free(&self, row: &Between, wall: f64) -> [f64; 2] {
         let most = SHORT + self.parameters.labels_max_width;
         let away = if self.side == 0 { 1.0 } else { -1.0 };
         let ends = [wall + away * WALL, wall + away * most];
         let before = Row { direction: self.view.direction, along: sorted(ends), across: row.faces, between: None };
         let columns = Columns::new(self.look, self.frame, [self.view, self.other], &before, self.view.pitch);
-        columns.first_stop(self.side == 0).map_or(most, |free| WALL + free)
+        columns.first(self.side == 0).map(|off| off.map_or(most, |off| WALL + off))
     }
 
     /// The way past some rows, if it is free.

@@ -141,12 +141,15 @@ impl<'a> Columns<'a> {
         runs(&open, true).into_iter().map(|(from, to)| [self.place(from), self.place(to)]).collect()
     }
 
-    /// How far from its lower end, or from its upper one, the first of it stands, metres; nothing where nothing does.
-    pub fn first_stop(&self, from_low: bool) -> Option<f64> {
+    /// How far from its lower end, or from its upper one, the first of it stands, metres, and the first that fills half of it:
+    /// nothing where nothing does.
+    pub fn first(&self, from_low: bool) -> [Option<f64>; 2] {
         let count = self.blocked.len();
-        let stop =
-            if from_low { (0..count).find(|&n| self.stops[n]) } else { (0..count).rev().find(|&n| self.stops[n]) };
-        stop.map(|n| if from_low { n } else { count - 1 - n } as f64 * self.view.cell)
+        let far = |is: &dyn Fn(usize) -> bool| {
+            let off = (0..count).find(|off| is(if from_low { *off } else { count - 1 - off }))?;
+            Some(off as f64 * self.view.cell)
+        };
+        [far(&|n| self.stops[n]), far(&|n| self.blocked[n] >= TAKEN)]
     }
 
     /// True when what is known to be a way elsewhere goes on through the row: it is wider than a bay, and free.
