@@ -192,3 +192,31 @@ def test_ways_as_wide_as_bays_lead_past_the_ends_of_rows_though_the_last_bays_ar
     taken = [set(np.flatnonzero(draws.random(8) < 0.5).tolist()) for _ in range(2)]
     survey = groundplan.survey(pallets((54, 54), 8, taken, off=4), resolution=RESOLUTION)
     assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 2
+
+
+@pytest.mark.parametrize(("seed", "rows", "count", "fill"), [(2, 4, 5, 0.7), (5, 3, 6, 0.6)])
+def test_a_way_through_rows_leads_on_through_the_next_where_the_bays_beside_it_are_empty(
+    seed: int, rows: int, count: int, fill: float
+) -> None:
+    # Two racks back to back in each row, two blocks of bays of 2.7 m, a way of 2.5 m between them, 3 m from the walls.
+    # Of the last row the bays beside that way are empty, and its posts stand about as far apart as all others.
+    bay, depth, way, end = 54, 22, 50, 60
+    draws = np.random.default_rng(seed)
+    picture = hall(2 * end + 2 * count * bay + way, rows * (AISLE + 2 * depth + 3) + AISLE)
+    for rack in range(2 * rows):
+        low = 20 + AISLE + rack // 2 * (AISLE + 2 * depth + 3) + rack % 2 * (depth + 3)
+        taken = set(np.flatnonzero(draws.random(2 * count) < fill).tolist())
+        if rack >= 2 * rows - 2:
+            taken -= {count - 1, count}
+        for block in range(2):
+            left = 20 + end + block * (count * bay + way)
+            for post in range(count + 1):
+                x = min(max(left + post * bay - 1, left), left + count * bay - 2)
+                for y in (low, low + depth - 2):
+                    picture[y : y + 2, x : x + 2] = 0
+            for n in range(count):
+                for x in (left + n * bay + at for at in (3, 28) if n + block * count in taken):
+                    picture[low + 1 : low + depth - 1, x : x + 23] = 0
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    expected = ["L"] * 4 + ["T"] * 2 * rows + ["X"] * (rows - 1)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == expected

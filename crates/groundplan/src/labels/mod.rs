@@ -5,6 +5,7 @@ mod barriers;
 mod bays;
 mod beside;
 mod blocks;
+mod carried;
 mod closing;
 mod columns;
 mod confidence;

@@ -3,6 +3,7 @@
 
 use super::beside::placed;
 use super::blocks::Standing;
+use super::carried;
 use super::connected;
 use super::corridors::{self, Strip};
 use super::crossed;
@@ -95,16 +96,29 @@ impl Sketch {
     /// Beside what is still being made of it.
     pub fn beside(evidence: &Evidence, sight: Sight<Later<Free>>) -> Self {
         let Sight { look, views, on_legs, free } = sight;
-        let plan = Plan::of(evidence, &look, &views, &on_legs);
+        let (views, plan) = planned(evidence, &look, views, &on_legs);
         Self { views, plan, free: free.get() }
     }
 
     /// From what is seen.
     pub fn new(evidence: &Evidence, sight: Sight<Free>) -> Self {
         let Sight { look, views, on_legs, free } = sight;
-        let plan = Plan::of(evidence, &look, &views, &on_legs);
+        let (views, plan) = planned(evidence, &look, views, &on_legs);
         Self { views, plan, free }
     }
+}
+
+/// The plan, and the views that it is of: where ways across rows lead over the ground of racks on legs, of those that are
+/// left beside the ways.
+fn planned(evidence: &Evidence, look: &Look, views: Vec<Turned>, on_legs: &[Row]) -> (Vec<Turned>, Plan) {
+    let plan = Plan::of(evidence, look, &views, on_legs);
+    let left = carried::without_ways(evidence, &views, &plan.strips, on_legs);
+    if left == on_legs {
+        return (views, plan);
+    }
+    let views = map_each(views.len(), evidence.threads, |d| Turned::new(&shared_out(evidence), look, d, &left));
+    let plan = Plan::of(evidence, look, &views, &left);
+    (views, plan)
 }
 
 /// The ways, what they meet and where they end, and the rows between them.
@@ -153,7 +167,9 @@ impl Plan {
         let (known, more) = (plan.strips.len(), gates.len());
         plan.strips.extend(gates);
         plan.strips = joined::apart(views, widths::alike(views, plan.strips));
-        if more > 0 || plan.strips.len() < known {
+        let carried = carried::on(evidence, look, views, plan.strips.clone());
+        if more > 0 || plan.strips.len() < known || carried != plan.strips {
+            plan.strips = carried;
             plan = Self::new(views, plan.strips, threads);
         }
         if let Some(more) = heads::with(evidence, look, views, &plan.strips, &plan.rows) {

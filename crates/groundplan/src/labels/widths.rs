@@ -60,24 +60,16 @@ impl Widths {
 pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
     let mut stays = vec![true; strips.len()];
-    let walls = between_halls(views, &strips);
-    let places: Vec<Place> =
-        views.iter().map(|view| Place::new(views, &strips, &placed, &walls, view.direction)).collect();
-    // How long the longest row is that each runs along.
-    let mut along = vec![0.0_f64; strips.len()];
-    for Place { aisles, rows, .. } in &places {
-        for (row, n) in rows.iter().flat_map(|(row, between)| between.map(|n| (row, aisles[n]))) {
-            along[n] = along[n].max(row.length());
-        }
-    }
+    let places = Place::of_each(views, &strips, &placed);
+    let along = longest(&places, strips.len());
     for (view, place) in views.iter().zip(&places) {
         let Some(other) = crossing(views, view.direction) else { continue };
         let through = Crossed::of_each([view, other], &strips, &placed, place, &along);
-        let whole = |n: &usize| through[*n].rows >= 2 && !through[*n].goes_on;
+        let whole = |n: &usize| through[*n].rows >= 2 && through[*n].next.is_empty();
         let is_told_within = (0..strips.len()).filter(whole).any(|n| through[n].is_within);
         let known = Widths((0..strips.len()).filter(whole).map(|n| strips[n].width()).collect());
         for (n, crossed) in through.iter().enumerate() {
-            let is_some = crossed.rows > 0 && crossed.goes_on && crossed.rest <= REST && !known.is_empty();
+            let is_some = crossed.rows > 0 && !crossed.next.is_empty() && crossed.rest <= REST && !known.is_empty();
             // Where the rows beside it go on to the wall, one that does not is empty there.
             let is_bay = || crossed.rows == 1 && !crossed.is_led_on && is_at_wall(other, &strips[n]);
             let width = strips[n].width();
@@ -88,6 +80,17 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     }
     let mut flags = stays.into_iter();
     strips.into_iter().filter(|_| flags.next().unwrap_or(true)).collect()
+}
+
+/// How long the longest row is that each strip runs along, metres.
+pub fn longest(places: &[Place], strips: usize) -> Vec<f64> {
+    let mut along = vec![0.0_f64; strips];
+    for Place { aisles, rows, .. } in places {
+        for (row, n) in rows.iter().flat_map(|(row, between)| between.map(|n| (row, aisles[n]))) {
+            along[n] = along[n].max(row.length());
+        }
+    }
+    along
 }
 
 /// True when a wall runs all along one side of a strip.
@@ -113,14 +116,20 @@ fn between_halls(views: &[Turned], strips: &[Strip]) -> BTreeMap<[usize; 2], boo
 }
 
 /// The aisles along a direction, and the rows between them, each with the two beside it.
-struct Place {
-    aisles: Vec<usize>,
-    rows: Vec<(Row, [usize; 2])>,
+pub struct Place {
+    pub aisles: Vec<usize>,
+    pub rows: Vec<(Row, [usize; 2])>,
     /// Which of the rows are walls between halls.
     walls: Vec<bool>,
 }
 
 impl Place {
+    /// Of each direction.
+    pub fn of_each(views: &[Turned], strips: &[Strip], placed: &[Beside]) -> Vec<Self> {
+        let walls = between_halls(views, strips);
+        views.iter().map(|view| Self::new(views, strips, placed, &walls, view.direction)).collect()
+    }
+
     fn new(
         views: &[Turned],
         strips: &[Strip],
@@ -142,12 +151,12 @@ impl Place {
 
 /// What a strip crosses of the rows of a place.
 #[derive(Clone, Default)]
-struct Crossed {
-    rows: usize,
+pub struct Crossed {
+    pub rows: usize,
     /// How long it is without what leads through them, from aisle to aisle, metres.
     rest: f64,
-    /// It ends between two of them.
-    goes_on: bool,
+    /// Those beside them that it would lead through, were it longer.
+    pub next: Vec<usize>,
     /// Another leads on through the next one, in line.
     is_led_on: bool,
     /// One of them goes on beyond both its sides.
@@ -156,7 +165,7 @@ struct Crossed {
 
 impl Crossed {
     /// Of each strip, where the rows lie between aisles, along which it is not.
-    fn of_each(
+    pub fn of_each(
         [view, other]: [&Turned; 2],
         strips: &[Strip],
         placed: &[Beside],
@@ -201,14 +210,15 @@ impl Crossed {
             let is_wall = |m: &usize| walls[*m] || own.iter().any(|&n| rows[*m].0.is_wall_beside(&rows[n].0));
             let beside = |m: usize| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]);
             let next = || own.iter().flat_map(|&m| beside(m)).filter(|m| !is_wall(m));
-            let goes_on = next().any(|&m| crosses_at(n, m).is_some_and(|(s, _)| !crosses(n, s)));
+            let ends_before = |m: &&usize| crosses_at(n, **m).is_some_and(|(s, _)| !crosses(n, s));
             let is_in_line = |&other: &usize| other != n && overlap(strips[n].across, strips[other].across) > 0.0;
             let is_led_on = next().any(|&m| through[m].iter().any(is_in_line));
             let is_within = own.iter().any(|&m| {
                 let ([from, to], width) = (rows[m].0.along, strips[n].width());
                 crosses_at(n, m).is_some_and(|(_, u)| from + width < u && u < to - width)
             });
-            Self { rows: own.len(), rest, goes_on, is_led_on, is_within }
+            let next = next().filter(ends_before).copied().collect();
+            Self { rows: own.len(), rest, next, is_led_on, is_within }
         };
         crossed.iter().enumerate().map(of_strip).collect()
     }

@@ -1,0 +1,152 @@
+//! Ways across rows lead on through the next row where that is free: empty bays end racks as nothing does, but what leads
+//! through the rows beside shows that a way lies there.
+
+use super::Evidence;
+use super::beside::{Beside, placed};
+use super::corridors::Strip;
+use super::gates::crossing;
+use super::look::Look;
+use super::rows::{Row, SHORTEST};
+use super::sections::Columns;
+use super::turned::Turned;
+use super::widths::{Crossed, Place, longest};
+use crate::ends::{both, overlap, sorted, wider};
+use crate::grid::State;
+
+/// What leads through so many rows is a way.
+const ROWS: usize = 2;
+/// What stands so near to its sides is beside it, metres; what lies between is looked at in such steps, metres.
+const SIDE: f64 = 0.35;
+const STEP: f64 = 0.1;
+
+/// The strips, those across rows as far as these are free.
+pub fn on(evidence: &Evidence, look: &Look, views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
+    loop {
+        let longer = a_row_on(evidence, look, views, &strips);
+        if longer == strips {
+            return strips;
+        }
+        strips = longer;
+    }
+}
+
+/// The strips, those across rows through the next one on either side.
+fn a_row_on(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]) -> Vec<Strip> {
+    let mut longer = strips.to_vec();
+    each(views, strips, |n, lead, middles| {
+        if lead.is_free(evidence, look) {
+            longer[n].along = both(longer[n].along, lead.along(middles));
+        }
+    });
+    longer
+}
+
+/// Racks on legs, without what of their ground ways across rows would lead over as far as floor shows there: legs at a whole
+/// number of bays from one another stand on both sides of such a way too.
+pub fn without_ways(evidence: &Evidence, views: &[Turned], strips: &[Strip], on_legs: &[Row]) -> Vec<Row> {
+    let (mut racks, mut strips) = (on_legs.to_vec(), strips.to_vec());
+    while !racks.is_empty() {
+        let mut longer = strips.clone();
+        each(views, &strips, |n, lead, middles| {
+            if lead.is_within() && lead.shows_floor(evidence) {
+                longer[n].along = both(longer[n].along, lead.along(middles));
+                racks = racks.iter().flat_map(|rack| lead.left_of(rack)).collect();
+            }
+        });
+        if longer == strips {
+            break;
+        }
+        strips = longer;
+    }
+    racks
+}
+
+/// Of all strips that lead through rows and end before another one, through which none leads there: the number of each, with
+/// the row before it, and the middles of the aisles beside that.
+fn each(views: &[Turned], strips: &[Strip], mut tell: impl FnMut(usize, &Lead, [f64; 2])) {
+    let placed = placed(views, strips.iter().map(Strip::place));
+    let places = Place::of_each(views, strips, &placed);
+    let along = longest(&places, strips.len());
+    for (view, place) in views.iter().zip(&places) {
+        let Some(other) = crossing(views, view.direction) else { continue };
+        let crossed = Crossed::of_each([view, other], strips, &placed, place, &along);
+        for (n, crossed) in crossed.iter().enumerate().filter(|(_, crossed)| crossed.rows >= ROWS) {
+            for (row, between) in crossed.next.iter().map(|&m| &place.rows[m]) {
+                let lead = Lead { views: [view, other], row, strip: &strips[n] };
+                if lead.is_alone(n, strips, &placed) {
+                    tell(n, &lead, between.map(|aisle| strips[place.aisles[aisle]].middle()));
+                }
+            }
+        }
+    }
+}
+
+/// A strip that ends before a row, and the directions of the row and of the strip.
+struct Lead<'a> {
+    views: [&'a Turned; 2],
+    row: &'a Row,
+    strip: &'a Strip,
+}
+
+impl Lead<'_> {
+    /// What of a rack it does not lead over.
+    fn left_of(&self, rack: &Row) -> Vec<Row> {
+        let sides = self.sides();
+        let is_there = overlap(rack.across, self.row.across) > 0.0 && overlap(rack.along, sides) > 0.0;
+        if rack.direction != self.row.direction || !is_there {
+            return vec![rack.clone()];
+        }
+        let [from, to] = rack.along;
+        let left = [[from, to.min(sides[0])], [from.max(sides[1]), to]].map(|along| Row { along, ..rack.clone() });
+        left.into_iter().filter(|rack| rack.length() >= SHORTEST).collect()
+    }
+
+    /// From where to where along it the strip would lie between two places across the row's direction.
+    fn along(&self, across: [f64; 2]) -> [f64; 2] {
+        let [view, other] = self.views;
+        sorted(across.map(|v| view.crossing(other, v, self.strip.middle())[0]))
+    }
+
+    /// True when no other strip leads through the row there; of all it is known where they lie.
+    fn is_alone(&self, own: usize, strips: &[Strip], placed: &[Beside]) -> bool {
+        let along = self.along(self.row.across);
+        let others = placed[self.strip.direction].touching(along, self.strip.across);
+        let is_there =
+            |strip: &Strip| overlap(strip.along, along) > 0.0 && overlap(strip.across, self.strip.across) > 0.0;
+        !others.into_iter().any(|n| n != own && is_there(&strips[n]))
+    }
+
+    /// From where to where along the row it would lie.
+    fn sides(&self) -> [f64; 2] {
+        let [view, other] = self.views;
+        let middle = f64::midpoint(self.row.across[0], self.row.across[1]);
+        let reach = self.strip.width() / 2.0 / libm::sin(other.angle - view.angle).abs();
+        wider([view.crossing(other, middle, self.strip.middle())[1]; 2], reach)
+    }
+
+    /// True when it would lie between the row's ends.
+    fn is_within(&self) -> bool {
+        let [from, to] = self.sides();
+        self.row.along[0] < from && to < self.row.along[1]
+    }
+
+    /// True when it would lie between the row's ends, and nothing stands there.
+    fn is_free(&self, evidence: &Evidence, look: &Look) -> bool {
+        let columns = || Columns::new(look, &evidence.grid.frame, self.views, self.row, self.views[0].pitch);
+        self.is_within() && columns().is_free(self.sides())
+    }
+
+    /// True when the map shows floor where it would lead through the row, and no leg.
+    fn shows_floor(&self, evidence: &Evidence) -> bool {
+        let (across, along) = (wider(self.strip.across, -SIDE), self.along(self.row.across));
+        let state = |s: f64, t: f64| evidence.grid.state_at(self.views[1].to_map([s, t]));
+        let mut places = steps(along).flat_map(|s| steps(across).map(move |t| (s, t)));
+        places.all(|(s, t)| state(s, t) == State::Free)
+    }
+}
+
+/// Places from one to another.
+fn steps([from, to]: [f64; 2]) -> impl Iterator<Item = f64> + Clone {
+    let count = ((to - from) / STEP).ceil().max(1.0) as usize;
+    (0..=count).map(move |n| from + (to - from) * n as f64 / count as f64)
+}
