@@ -5,7 +5,7 @@
 
 use super::closing::{Closing, Uprights};
 use super::look::Look;
-use super::rows::Row;
+use super::rows::{Row, SHORTEST};
 use super::runs::runs;
 use super::shares::Shares;
 use super::turned::Turned;
@@ -30,6 +30,9 @@ pub const LEFT: f64 = 0.25;
 const CLUTTER: f64 = 0.2;
 /// A way between posts, and not between frames, is free but for this share of its columns.
 const FREE: f64 = 0.12;
+/// A rack that is drawn by its outline stands on both its faces over so much of its length at least: not all of them may have
+/// been hit.
+const OUTLINED: f64 = 0.7;
 /// Structure this near to a face stands on it, metres.
 const FACE: f64 = 0.25;
 
@@ -212,10 +215,12 @@ impl<'a> Columns<'a> {
     }
 
     /// Passes by what stands in the row and closes no rack's depth anywhere, unless it is two posts across from each
-    /// other: goods on the floor.
+    /// other, or as long as a rack and drawn by its outline: goods on the floor.
     fn pass_by(&mut self) {
         for (from, to) in runs(&self.stops, true) {
-            let is_frame = self.faces[from..to].iter().all(|faces| *faces == [true; 2]);
+            let both = self.faces[from..to].iter().filter(|faces| **faces == [true; 2]).count();
+            let is_long = (to - from) as f64 * self.view.cell >= SHORTEST;
+            let is_frame = both as f64 >= if is_long { OUTLINED } else { 1.0 } * (to - from) as f64;
             let is_within = from > 0 && to < self.stops.len();
             if is_within && !is_frame && (from..=to).all(|n| self.closing(n) == Closing::Open) {
                 self.stops[from..to].fill(false);
