@@ -11,7 +11,7 @@ import zoo
 from zoo import RESOLUTION, ZOO
 
 import groundplan
-from groundplan import Directions, Lines, MapError, ParameterError
+from groundplan import Directions, Lines, MapError, ParameterError, Route
 
 MAP = groundplan.from_array(ZOO["single_room"](), RESOLUTION)
 FOUND = zoo.surveyed("single_room")
@@ -101,8 +101,12 @@ def test_a_resolution_given_in_python_gets_no_flag_for_a_hint() -> None:
 
 def test_what_is_printed_is_short() -> None:
     assert repr(MAP) == "Map('', 240 x 160 pixels of 0.05 m)".replace("240 x 160", f"{MAP.width} x {MAP.height}")
-    for thing in (MAP, GRADIENTS, FOUND, FOUND.directions, FOUND.lines, FOUND.subdivision, FOUND.radiograms[0]):
-        assert len(repr(thing)) < 200 and "array" not in repr(thing)
+    stages = (FOUND.directions, FOUND.lines, FOUND.subdivision, FOUND.occupancy, FOUND.walls, FOUND.adjacency)
+    response = groundplan.find_response(FOUND.radiograms[0])
+    way = Route(np.arange(3, dtype=np.uint32), np.zeros((2, 2)), 1.5, 0.3, ("S1-01",))
+    for thing in (MAP, GRADIENTS, FOUND, *stages, FOUND.radiograms[0], response, way):
+        assert len(repr(thing)) < 230 and "array" not in repr(thing)
+    assert repr(way) == "Route(3 faces, 2 points, length 1.5, clearance 0.3, 1 racks)"
     assert repr(Directions.of([0.0])) == "Directions(1 angles, 1 weights, 0 histogram, explained 1)"
 
 

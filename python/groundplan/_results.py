@@ -46,7 +46,7 @@ class Stage:
 
     def __repr__(self) -> str:
         parts = {f.name: getattr(self, f.name) for f in fields(self)}  # type: ignore[arg-type]
-        said = (f"{len(v)} {name}" if isinstance(v, np.ndarray) else f"{name} {v:g}" for name, v in parts.items())
+        said = (f"{name} {v:g}" if isinstance(v, int | float) else f"{len(v)} {name}" for name, v in parts.items())
         return f"{type(self).__name__}({', '.join(said)})"
 
 
