@@ -46,6 +46,20 @@ def test_missing_fields_get_what_map_saver_writes(tmp_path: Path) -> None:
         assert word in message(got, "fields-missing")
 
 
+def test_a_key_like_one_that_is_missing_is_named(tmp_path: Path) -> None:
+    write_pgm(tmp_path / "map.pgm", hall())
+    got = read(write_yaml(tmp_path, occupied_thresh=None, occupied_threshold="0.5"))
+    assert "occupied_thresh (but occupied_threshold)" in message(got, "fields-missing")
+    for key, slip, value in (
+        ("resolution", "resolutoin", "0.05"),
+        ("origin", "orign", "[0, 0, 0]"),
+        ("image", "Image", "a"),
+    ):
+        error = refused(write_yaml(tmp_path, **{key: None, slip: value}), f"map.{key}", key)
+        assert error.hint == f"it has {slip}: did you mean {key}?"
+    assert read(write_yaml(tmp_path, resolution=None, resolutoin="0.05"), resolution=0.2).resolution == 0.2
+
+
 def test_arguments_beat_the_yaml(tmp_path: Path) -> None:
     write_pgm(tmp_path / "map.pgm", hall())
     yaml = write_yaml(tmp_path, resolution="0", origin=None)

@@ -19,7 +19,7 @@ from groundplan.maps._source import Described, Occupancies, Picture, Progress, S
 from groundplan.maps._tally import Tally
 from groundplan.maps._warnings import rounded
 from groundplan.maps.image import read_image
-from groundplan.maps.map_server import check_origin, check_resolution, read_yaml
+from groundplan.maps.map_server import check_origin, check_resolution, meant, read_yaml
 
 #: What each kind of file is called, and what can be given for it alone.
 _CALLED: dict[Kind, str] = {
@@ -130,7 +130,7 @@ def read_or_leave(
     where = str(place)
     metres = described.resolution if metres is None else metres
     if metres is None:
-        hint = "--resolution sets it, such as --resolution 0.05"
+        hint = meant("resolution", described.misspelled) or "--resolution sets it, such as --resolution 0.05"
         raise MapError("map.resolution", f"{where} states no resolution", hint)
     pose = described.origin
     if origin is not None:
@@ -138,7 +138,8 @@ def read_or_leave(
         warnings = [warning for warning in warnings if warning.code != "yaw-nan"] + odd
     if pose is None:
         if kind == "yaml":
-            raise MapError("map.origin", f"{where} states no origin", "--origin sets it, such as --origin 0 0 0")
+            hint = meant("origin", described.misspelled) or "--origin sets it, such as --origin 0 0 0"
+            raise MapError("map.origin", f"{where} states no origin", hint)
         pose = (0.0, 0.0, 0.0)
     greys = {name: given.get(name) for name in ("unknown", "negate", "mode")}
     thresholds = given.get("occupied_thresh"), given.get("free_thresh")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -86,6 +86,8 @@ class Described:
         Rows and columns of all pixels, where the source can be read by rows.
     block : int
         Rows that are stored together, and best read so.
+    misspelled : mapping of str to str
+        Of what is not stated, the names under which something is stated that may be meant.
     """
 
     image: Path
@@ -99,6 +101,7 @@ class Described:
     content: Picture | Occupancies | None = None
     shape: tuple[int, int] | None = None
     block: int = 1
+    misspelled: Mapping[str, str] = field(default_factory=dict)
 
 
 def bands(height: int, width: int, pixels: int = 1 << 20) -> Iterator[slice]:

@@ -7,7 +7,8 @@ Source: ros-navigation/navigation2 ``nav2_map_server/src/map_io.cpp``. Nav2 refu
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 from pathlib import Path
 from typing import cast
 
@@ -20,6 +21,9 @@ from groundplan.maps._source import Described, Origin
 
 #: A YAML of a map has a few hundred bytes; what is larger is something else.
 LARGEST_YAML = 1 << 20
+
+#: The keys that map_server reads.
+KEYS = ("image", "resolution", "origin", "negate", "mode", "occupied_thresh", "free_thresh")
 
 #: Metres a pixel, and metres from the frame's origin, beyond which a value is a slip and floats lose the centimetre.
 SMALLEST_RESOLUTION, LARGEST_RESOLUTION, FARTHEST_ORIGIN = 1e-6, 1e4, 1e9
@@ -49,13 +53,13 @@ def read_yaml(path: Path) -> Described:
     )
     assumed = {"negate": "0", "occupied_thresh": str(OCCUPIED_THRESH), "free_thresh": str(FREE_THRESH)}
     missing = [name for name in assumed if name not in fields]
+    misspelled = _misspelled(fields)
     if missing:
-        said = " and ".join(f"{name} {assumed[name]}" for name in missing)
-        warnings.append(
-            MapWarning("fields-missing", f"{path.name} does not state {', '.join(missing)}: assumed {said}")
-        )
+        named = ", ".join(f"{name} (but {misspelled[name]})" if name in misspelled else name for name in missing)
+        said = ", ".join(f"{name} {assumed[name]}" for name in missing)
+        warnings.append(MapWarning("fields-missing", f"{path.name} does not state {named}: assumed {said}"))
     resolution = check_resolution(fields["resolution"], str(path)) if "resolution" in fields else None
-    return Described(image, resolution, origin, negate, mode, occupied, free, tuple(warnings))
+    return Described(image, resolution, origin, negate, mode, occupied, free, tuple(warnings), misspelled=misspelled)
 
 
 def check_resolution(value: object, where: str) -> float:
@@ -158,12 +162,25 @@ def _mapping(path: Path) -> dict[str, object]:
     return {str(key): value for key, value in fields.items()}
 
 
+def _misspelled(fields: dict[str, object]) -> dict[str, str]:
+    """Of the keys that are not there, those that others may have been meant to be: each with what is there."""
+    others = [key for key in fields if key not in KEYS]
+    near = {key: get_close_matches(key, others, 1) for key in KEYS if key not in fields}
+    return {key: like[0] for key, like in near.items() if like}
+
+
+def meant(key: str, misspelled: Mapping[str, str]) -> str | None:
+    """The hint where a key is not there but one that is like it."""
+    return f"it has {misspelled[key]}: did you mean {key}?" if key in misspelled else None
+
+
 def _image(path: Path, fields: dict[str, object]) -> tuple[Path, list[MapWarning]]:
     """The image's path. One that was absolute on another computer is looked for beside the YAML."""
     name = fields.get("image")
     if not isinstance(name, str) or not name or "\0" in name:
         said = f"image {shown(name)} is no file name" if "image" in fields else "it names no image"
-        raise MapError("map.image", f"{path} is not a map_server YAML: {said}")
+        hint = meant("image", _misspelled(fields))
+        raise MapError("map.image", f"{path} is not a map_server YAML: {said}", hint)
     image = path.parent / name
     beside = path.parent / name.replace("\\", "/").rsplit("/", 1)[-1]
     try:
