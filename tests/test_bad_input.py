@@ -159,6 +159,14 @@ def test_a_poor_map_is_surveyed_and_its_trouble_told(case: str, tmp_path: Path, 
     assert groundplan.Survey.read("out/survey.json").problems() == []
 
 
+@pytest.mark.parametrize(("resolution", "said"), [("5", "a pixel is 5 m wide"), ("0.0001", "the whole map is")])
+def test_a_scale_that_is_no_site_is_told(resolution: str, said: str, tmp_path: Path, capsys: Capture) -> None:
+    Image.fromarray(hall()).save(tmp_path / "map.png")
+    for given, is_odd in ((resolution, True), ("0.05", False)):
+        ran = call(capsys, "survey", "map.png", "--resolution", given, "-o", "out")
+        assert ran.code == 0 and ("[odd-scale]" in ran.err and said in ran.err) == is_odd
+
+
 def test_a_yaw_that_is_no_number_is_read_as_zero_with_a_warning(tmp_path: Path, capsys: Capture) -> None:
     import groundplan
 

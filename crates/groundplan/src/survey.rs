@@ -5,7 +5,7 @@ use crate::arrangement::arrange;
 use crate::bands::{side_by_side, worth};
 use crate::directions::{Directions, find_directions};
 use crate::gradients::{Gradients, find_gradients};
-use crate::grid::Grid;
+use crate::grid::{Frame, Grid};
 use crate::labels::{
     Division, Evidence, Ground, Label, Memory, Pattern, Recall, Sight, Sketch, find_confidence, find_labels,
     find_labels_in, find_patterns, find_uprights,
@@ -126,7 +126,7 @@ pub fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, threads: u
         }
     });
     survey.memory = recall.memory();
-    survey.warnings = find_warnings(&survey, survey.gradients.pixels.len(), parameters);
+    survey.warnings = find_warnings(&survey, frame, survey.gradients.pixels.len(), parameters);
     debug_assert_eq!(survey.subdivision.problems(), Vec::<String>::new());
     debug_assert_eq!(survey.occupancy.pixels.iter().sum::<u64>(), (grid.frame.width * grid.frame.height) as u64);
     survey
@@ -138,7 +138,7 @@ pub fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, threads: u
 #[must_use]
 pub fn survey_sparingly(grid: &Grid, parameters: &Parameters, given: Given, threads: usize) -> Survey {
     let (mut survey, edges) = sparing::survey(grid, parameters, given, threads);
-    survey.warnings = find_warnings(&survey, edges, parameters);
+    survey.warnings = find_warnings(&survey, &grid.frame, edges, parameters);
     survey
 }
 
@@ -232,17 +232,28 @@ fn undecided(labels: &[Label], confidence: &[f64]) -> Option<Warning> {
 
 /// Fewer edge pixels than this are no structure.
 const FEW_EDGE_PIXELS: usize = 100;
+/// Larger pixels, and smaller maps, are rather a slip in the resolution than a site, metres.
+const LARGEST_PIXEL: f64 = 1.0;
+const SMALLEST_MAP: f64 = 1.0;
 /// Less of the structure lined up than this is no ground plan.
 const LITTLE_EXPLAINED: f64 = 0.12;
 /// Two directions hold at least this much of what lines up, or it is not one ground plan.
 const PAIR_SHARE: f64 = 0.75;
 
-fn find_warnings(survey: &Survey, edges: usize, parameters: &Parameters) -> Vec<Warning> {
+fn find_warnings(survey: &Survey, frame: &Frame, edges: usize, parameters: &Parameters) -> Vec<Warning> {
     let Survey { directions, lines, labels, .. } = survey;
     let mut warnings = Vec::new();
     let mut warn = |code, message| warnings.push(Warning { code, message });
+    let (pixel, longest) = (frame.resolution, frame.width.max(frame.height) as f64 * frame.resolution);
+    if pixel > LARGEST_PIXEL {
+        warn("odd-scale", format!("a pixel is {pixel} m wide: is the resolution in metres per pixel?"));
+    } else if longest < SMALLEST_MAP {
+        let millimetres = (1000.0 * longest).ceil();
+        warn("odd-scale", format!("the whole map is {millimetres} mm long: is the resolution in metres per pixel?"));
+    }
     if edges < FEW_EDGE_PIXELS {
-        warn("few-edges", format!("the map has only {edges} edge pixels: nothing much can be said of it"));
+        let count = if edges == 0 { "no".to_owned() } else { format!("only {edges}") };
+        warn("few-edges", format!("the map has {count} edge pixels: nothing much can be said of it"));
     }
     if directions.angles.is_empty() {
         warn("no-structure", "no direction stands out: the map has no straight structure".to_owned());
