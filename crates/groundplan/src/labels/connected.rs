@@ -3,8 +3,10 @@
 
 use super::beside::{Beside, placed};
 use super::corridors::{ALIKE, ALONE, Strip};
-use super::junctions::{self, Meeting};
+use super::junctions;
+use super::meeting::{Meeting, of_each};
 use super::rows::{self, DEPTH};
+use super::shut;
 use super::sided;
 use super::turned::Turned;
 use crate::ends::{overlap, shared, wider};
@@ -30,8 +32,8 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
     loop {
         let placed = placed(views, strips.iter().map(Strip::place));
         let meetings = junctions::find(views, &strips, threads);
-        let met = junctions::of_each(&meetings, strips.len());
-        let is_shut = |n: usize| (0..2).all(|side| junctions::is_shut(views, &strips[n], side));
+        let met = of_each(&meetings, strips.len());
+        let is_shut = |n: usize| (0..2).all(|side| shut::is_shut(views, &strips[n], side));
         let goes_on =
             |n: usize, metres: f64, (widths, least): (f64, f64)| metres >= least.max(widths * strips[n].width());
         let leads = |n: usize| {

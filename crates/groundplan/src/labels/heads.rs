@@ -6,11 +6,11 @@ use super::beside::{Beside, placed};
 use super::corridors::{Strip, UNTOLD};
 use super::family;
 use super::gates::crossing;
-use super::junctions;
 use super::look::Look;
 use super::ragged;
 use super::rows::Row;
 use super::sections::Columns;
+use super::shut;
 use super::turned::Turned;
 use crate::ends::{around, overlap, sorted};
 use crate::grid::Frame;
@@ -142,7 +142,7 @@ impl Heads<'_> {
 
     /// Where what closes an aisle beyond its end begins.
     fn wall(&self, aisle: usize) -> Option<f64> {
-        junctions::closed(self.view, &self.strips[aisle], self.side, SHORT + self.parameters.labels_max_width)
+        shut::closed(self.view, &self.strips[aisle], self.side, SHORT + self.parameters.labels_max_width)
     }
 
     /// How far a row ends before a wall, metres, and what fills it does; as far as is looked where nothing of it stands.

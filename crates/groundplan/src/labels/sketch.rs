@@ -11,15 +11,17 @@ use super::faced;
 use super::gates;
 use super::heads;
 use super::joined;
-use super::junctions::{self, Meeting};
+use super::junctions;
 use super::led;
 use super::legs;
 use super::look::Look;
+use super::meeting::Meeting;
 use super::narrowed;
 use super::racks;
 use super::ragged::{self, Ways};
 use super::rooms::{Bar, Space};
 use super::rows::Row;
+use super::shut;
 use super::turned::Turned;
 use super::uprights::{self, Upright};
 use super::whole;
@@ -245,7 +247,7 @@ fn extents(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<[f64
     for (n, reach, at) in all() {
         let (u, [low, high]) = (place(n, at), strips[n].along);
         for (side, beyond) in [(0, u - low), (1, high - u)] {
-            if !junctions::goes_on(&views[strips[n].direction], &strips[n], side, beyond - reach) {
+            if !shut::goes_on(&views[strips[n].direction], &strips[n], side, beyond - reach) {
                 extents[n][side] = u;
             }
         }

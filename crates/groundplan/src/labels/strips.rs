@@ -2,7 +2,7 @@
 
 use super::bays;
 use super::corridors::Strip;
-use super::junctions::Meeting;
+use super::meeting::Meeting;
 use super::names::{Named, names};
 use super::near::Near;
 use super::period::Period;

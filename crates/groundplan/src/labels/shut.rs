@@ -1,0 +1,73 @@
+//! Whether something shuts a corridor at one of its ends, or it goes on.
+
+use super::barriers;
+use super::corridors::Strip;
+use super::turned::Turned;
+use std::ops::Range;
+
+/// A corridor goes on beyond a junction when it does so for this long, metres, and where a wall ends it, for this share
+/// of its width: less is what is left of it at a corner.
+const ARM: (f64, f64) = (1.6, 0.65);
+/// What stands within this share of its width of a corridor's sides does not close it.
+const MARGIN: f64 = 0.2;
+/// A corridor's end is looked for so far beyond its walls, metres.
+pub const LOOK: f64 = 2.0;
+/// It is shut when it is closed within so much, metres.
+const SHUT: f64 = 1.0;
+/// What closes it is this deep, metres, and lies across this share of its width.
+const DEEP: f64 = 0.4;
+const ACROSS: f64 = 0.5;
+/// A thin wall stands in so many columns at most, where a border of cells parts it.
+const THIN: i64 = 2;
+
+/// True when a corridor goes on beyond a junction by so much that it leads on.
+pub fn goes_on(view: &Turned, strip: &Strip, side: usize, beyond: f64) -> bool {
+    beyond >= ARM.0 && (beyond >= ARM.1 * strip.width() || closed(view, strip, side, LOOK).is_none())
+}
+
+/// True when a wall closes a strip at one of its ends, be there a door in it.
+pub fn is_shut(views: &[Turned], strip: &Strip, side: usize) -> bool {
+    let view = &views[strip.direction];
+    let end = strip.along[side];
+    let [from, to] = [end - SHUT, end + SHUT].map(|u| view.column(u));
+    closed(view, strip, side, SHUT).is_some() || barriers::across(view, strip.across, from..to + 1).any()
+}
+
+/// A strip without what stands at its sides, across.
+pub fn inner(strip: &Strip) -> [f64; 2] {
+    let margin = MARGIN * strip.width();
+    [strip.across[0] + margin, strip.across[1] - margin]
+}
+
+/// Which way along a strip one of its ends lies.
+pub fn sign(side: usize) -> f64 {
+    if side == 0 { -1.0 } else { 1.0 }
+}
+
+/// Where what closes a strip so far beyond one of its ends begins.
+pub fn closed(view: &Turned, strip: &Strip, side: usize, look: f64) -> Option<f64> {
+    let sign = sign(side);
+    let cells = |metres: f64| (metres / view.cell).ceil() as i64;
+    let last = view.size[0] as i64 - 1;
+    let start = view.column(strip.along[side] - 0.5 * sign * view.cell) as i64;
+    let columns = (0..=cells(look)).map(|step| start + step * sign as i64).filter(|c| (0..=last).contains(c));
+    let [low, high] = inner(strip);
+    let first = columns.into_iter().find(|&c| view.is_closed(c as usize, low, high))?;
+    // A wall that is not quite square to the corridor shows in several columns.
+    let deep = (first - cells(DEEP)).max(0)..=(first + cells(DEEP)).min(last);
+    let across: f64 = deep.clone().map(|c| view.occupied(c as usize, low, high)).sum();
+    // Of one that is thinner than the samples are apart hardly any lies on a wall, and not all of a thin one may be hit.
+    let is_wall = across >= ACROSS
+        || deep.clone().any(|c| view.is_barred(c as usize, low, high))
+        || deep.clone().any(|c| is_hit(view, c as usize..(c + THIN).min(last + 1) as usize, [low, high]));
+    is_wall.then(|| view.along(first as usize) + if sign < 0.0 { view.cell } else { 0.0 })
+}
+
+/// True when something stands in some columns over as much of the way across as a wall does, be it ever so thin.
+fn is_hit(view: &Turned, columns: Range<usize>, [low, high]: [f64; 2]) -> bool {
+    let count = ((high - low) / view.cell).round().max(1.0);
+    let place = |n: usize| low + (high - low) * n as f64 / count;
+    let stands =
+        |n: &usize| view.some_occupied(columns.clone(), place(*n), place(n + 1)).iter().any(|share| *share > 0.0);
+    (0..count as usize).filter(stands).count() as f64 >= ACROSS * count
+}
