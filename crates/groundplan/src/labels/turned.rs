@@ -1,33 +1,21 @@
-//! The map turned so that one direction lies along the columns: how much of any piece of a strip is not free, and
-//! where structure lies on each line.
+//! The map turned so that one direction lies along the columns: where its places are, and by which keys what is found in
+//! it is kept. What its cells hold is in `sampled.rs`, what lies on its lines in `lined.rs`.
 
 use super::Evidence;
 use super::grounds::Grounds;
-use super::look::{BLOCKED, LANES, Look, OCCUPIED, between_rays};
-use super::patches::Patches;
+use super::look::{LANES, Look};
 use super::recall::Key;
 use super::rows::Row;
-use super::summed::{Part, Summed};
-use super::sums::{Cells, Source, Told, What};
+use super::summed::Summed;
+use super::sums::{Cells, Told, What};
 use crate::bits::Bits;
 use crate::ends::wider;
-use crate::gradients;
-use crate::grid::{Frame, rounded};
-use crate::on_line::OnLine;
-use crate::radiograms::weight;
+use crate::grid::rounded;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// Cells of the turned raster are about this large, metres.
 const CELL: f64 = 0.1;
-/// Cells that are kept around what was seen: what stands in one bars those beside it.
-const SPARE: usize = 2;
-/// Pixels this near to a line lie on it, metres, or at least so many pixels.
-const NEAR: (f64, f64) = (0.12, 2.0);
-
-/// Lines with less structure than this, metres, and than this share of a strong line's, are no sides of corridors but
-/// the faces of single goods.
-const STRONG: (f64, f64) = (2.0, 0.08);
 
 /// One direction's view of the map. Places along it (u) and across it (v) are metres in the map frame turned by the
 /// direction: u = p.t with t = (cos, sin), v = p.n with n = (-sin, cos).
@@ -58,7 +46,7 @@ pub struct Turned {
     /// What is told of each row of cells.
     pub rows: Arc<Vec<Told>>,
     /// Racks that stand on legs, whose ground is taken.
-    grounds: Grounds,
+    pub(super) grounds: Grounds,
     /// Keys of the view without its rows and lines, and of its lines.
     keys: (Key, Arc<Vec<Key>>),
 }
@@ -152,157 +140,6 @@ impl Turned {
         self.cells.into_near()
     }
 
-    /// The samples that are blocked or occupied in each cell.
-    fn look_at(&self, evidence: &Evidence, look: &Look) -> (Cells, Vec<Told>) {
-        let samples = self.samples as usize;
-        let frame = &evidence.grid.frame;
-        let sample = self.cell / samples as f64;
-        let is_fine = sample > 1.1 * frame.resolution;
-        // On the grid, in pixels: the first sample, and the steps to the next one along and across.
-        let at = |u: f64, v: f64| frame.to_pixels(self.to_map([self.start[0] + u, self.start[1] + v]));
-        let (origin, along, across) = (at(0.0, 0.0), at(sample, 0.0), at(0.0, sample));
-        let steps = [along, across].map(|p| [0, 1].map(|axis| p[axis] - origin[axis]));
-        let place = |a: f64, b: f64| [0, 1].map(|axis| origin[axis] + a * steps[0][axis] + b * steps[1][axis]);
-        // Where samples are pixels apart, the staircase of a wall one pixel thick has no gap in lanes of two pixels, and no
-        // pixel lies between so many looks along and across a cell.
-        let pixels = (self.cell / frame.resolution).round() as usize;
-        let thin = pixels.div_ceil(2).clamp(samples, u32::BITS as usize);
-        let looks = pixels.next_multiple_of(thin);
-        let make = |n: usize, first: usize, row: &mut [u8]| {
-            let lanes: [[f64; 2]; LANES] = std::array::from_fn(|j| place(0.5, (n * samples + j) as f64 + 0.5));
-            look.cells(&lanes[..samples], steps[0], first, row);
-            if is_fine {
-                let each = f64::from(self.samples) / looks as f64;
-                let step = steps[0].map(|step| step * each);
-                add_thin(row, [thin, looks], |k, stands, bit| {
-                    let lane = place(0.5 * each, (n * samples) as f64 + (k as f64 + 0.5) * each);
-                    look.mark(lane, step, [looks, first], bit, stands);
-                });
-                between_rays(row, self.samples.pow(2) as u8);
-            }
-            self.take(n, first, row);
-        };
-        let patches = evidence.recall.patches(evidence.grid, evidence.threads);
-        let key = |rows: Range<usize>| {
-            let lanes = [rows.start, rows.end].map(|n| place(0.0, (n * samples) as f64));
-            let under = |patches: &Patches| patches.under(lanes, steps[0], self.size[0] * samples);
-            let key = patches.map_or(Key::default(), under).with(rows.len() as u64).with(samples as u64);
-            let [low, high] = [rows.start, rows.end].map(|n| self.start[1] + n as f64 * self.cell);
-            self.grounds.key(key, &rows, [low, high])
-        };
-        let (seen, recall) = (self.seen(evidence, look), evidence.recall);
-        Cells::new(self.size, self.samples.pow(2) as u16, seen, Source { make, key }, recall, evidence.threads)
-    }
-
-    /// The part of the view in which something was seen of the map, and a few cells more.
-    fn seen(&self, evidence: &Evidence, look: &Look) -> Part {
-        let mut ends = [[usize::MAX, 0]; 2];
-        for &corner in look.seen() {
-            let place = self.place(evidence.grid.frame.to_metres(corner));
-            for axis in [0, 1] {
-                let cell = ((place[axis] - self.start[axis]) / self.cell).max(0.0) as usize;
-                let [from, to] = &mut ends[axis];
-                (*from, *to) = ((*from).min(cell), (*to).max(cell));
-            }
-        }
-        let part = |axis: usize| {
-            let [from, to] = ends[axis];
-            from.saturating_sub(SPARE).min(self.size[axis])..(to + SPARE + 1).min(self.size[axis])
-        };
-        Part { columns: part(0), rows: part(1) }
-    }
-
-    /// In a row of cells, from some column on, takes those whose middles lie in a rack that stands on legs.
-    fn take(&self, n: usize, first: usize, row: &mut [u8]) {
-        let v = self.start[1] + (n as f64 + 0.5) * self.cell;
-        for [from, to] in self.grounds.at(n, v) {
-            let column = |u: f64| ((u - self.start[0]) / self.cell + 0.5).max(0.0) as usize;
-            let within = column(from).max(first)..column(to).min(first + row.len());
-            let taken = self.samples.pow(2) as u8;
-            within.for_each(|column| row[column - first] = row[column - first] & 0xf0 | taken);
-        }
-    }
-
-    fn cover_lines(&mut self, evidence: &Evidence) {
-        let frame = &evidence.grid.frame;
-        let lines = evidence.lines;
-        let strong = STRONG.0.min(STRONG.1 * lines.typical_amplitude());
-        let mut offsets: Vec<f64> = (0..lines.len())
-            .filter(|&n| lines.directions[n] as usize == self.direction && lines.amplitudes[n] >= strong)
-            .map(|n| lines.offsets[n])
-            .collect();
-        offsets.sort_by(f64::total_cmp);
-        let near = Self::near_line(frame);
-        let sides = self.grounds.sides();
-        for &(offset, _) in &sides {
-            let at = offsets.partition_point(|&other| other < offset);
-            let others = &offsets[at.saturating_sub(1)..offsets.len().min(at + 1)];
-            if others.iter().all(|other| (other - offset).abs() > near) {
-                offsets.insert(at, offset);
-            }
-        }
-        let key = |n: usize| self.key_on_line(evidence, offsets[n]);
-        let on = evidence.recall.lined.or_find_some(offsets.len(), key, |some| {
-            self.on_lines(evidence, &some.iter().map(|&n| offsets[n]).collect::<Vec<_>>())
-        });
-        let (mut covered, mut touched): (Vec<_>, Vec<_>) =
-            on.into_iter().map(|[covered, touched]| (covered, touched)).unzip();
-        let lines = OnLine::new(&offsets, near);
-        for (offset, along) in sides {
-            for line in lines.at(offset) {
-                for bits in [&mut covered[line], &mut touched[line]] {
-                    bits.fill(self.column(along[0])..self.column(along[1]) + 1);
-                }
-            }
-        }
-        self.offsets = Arc::new(offsets);
-        (self.covered, self.touched) = (Arc::new(covered), Arc::new(touched));
-    }
-
-    /// Edge pixels this near to a line lie on it, metres.
-    fn near_line(frame: &Frame) -> f64 {
-        NEAR.0.max(NEAR.1 * frame.resolution)
-    }
-
-    /// The key of all edge pixels on a line, where what is found is kept.
-    pub fn key_on_line(&self, evidence: &Evidence, offset: f64) -> Key {
-        let Some(patches) = evidence.recall.patches(evidence.grid, evidence.threads) else { return Key::default() };
-        let frame = &evidence.grid.frame;
-        // And the pixels around that bear on them.
-        let beside = Self::near_line(frame) + gradients::reach_across(frame.resolution, evidence.parameters);
-        let at = |u: f64, v: f64| frame.to_pixels(self.to_map([self.start[0] + u, v]));
-        let lanes = [offset - beside, offset + beside].map(|v| at(0.0, v));
-        let next = at(self.cell, offset - beside);
-        let step = [0, 1].map(|axis| next[axis] - lanes[0][axis]);
-        let numbers = [self.angle, self.cell, self.start[0], offset];
-        numbers.into_iter().fold(patches.under(lanes, step, self.size[0]), Key::number)
-    }
-
-    /// In which columns edge pixels on some lines lie along them, and in which any do.
-    fn on_lines(&self, evidence: &Evidence, offsets: &[f64]) -> Vec<[Bits; 2]> {
-        let frame = &evidence.grid.frame;
-        let lines = OnLine::new(offsets, Self::near_line(frame));
-        let mut found = vec![[Bits::new(self.size[0]), Bits::new(self.size[0])]; offsets.len()];
-        let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
-        let on_grid = frame.angle_to_grid(self.angle);
-        evidence.gradients.iter().for_each(|(pixel, along, magnitude)| {
-            let [u, v] = self.place(frame.to_metres(pixel.map(|p| f64::from(p) + 0.5)));
-            let on = lines.at(v);
-            if on.is_empty() {
-                return;
-            }
-            let lies = weight(f64::from(along), magnitude, on_grid, tolerance) > 0;
-            let column = self.column(u);
-            for [covered, touched] in &mut found[on] {
-                touched.insert(column);
-                if lies {
-                    covered.insert(column);
-                }
-            }
-        });
-        found
-    }
-
     /// Keys of the view and of its lines.
     fn find_keys(&self) -> (Key, Arc<Vec<Key>>) {
         let numbers = [self.angle, self.cell, self.start[0], self.start[1]];
@@ -393,19 +230,6 @@ impl Turned {
     pub(super) fn cells(&self, low: f64, high: f64) -> (usize, usize) {
         let at = |v: f64| rounded(((v - self.start[1]) / self.cell).clamp(0.0, self.size[1] as f64)) as usize;
         (at(low), at(high).max(at(low)))
-    }
-}
-
-/// In a row of cells, what stands across a cell, or across it and the next, and is so thin that no sample lies on it: it
-/// shows in all of so many lanes, along each of which is looked so often. Single specks do not.
-fn add_thin(row: &mut [u8], [lanes, looks]: [usize; 2], look_along: impl Fn(usize, &mut [u32], u32)) {
-    let mut stands = vec![0; row.len() + 1];
-    (0..looks).for_each(|k| look_along(k, &mut stands[..row.len()], 1 << (k * lanes / looks)));
-    for (cell, near) in row.iter_mut().zip(stands.windows(2)) {
-        let is_across = (near[0] | near[1]).count_ones() as usize == lanes;
-        if is_across && near[0] != 0 && *cell < OCCUPIED {
-            *cell = (*cell).max(BLOCKED) + OCCUPIED - BLOCKED;
-        }
     }
 }
 

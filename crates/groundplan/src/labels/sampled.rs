@@ -1,0 +1,99 @@
+//! The cells of the map seen along one direction: how many of each one's samples are blocked or occupied.
+
+use super::Evidence;
+use super::look::{BLOCKED, LANES, Look, OCCUPIED, between_rays};
+use super::patches::Patches;
+use super::recall::Key;
+use super::summed::Part;
+use super::sums::{Cells, Source, Told};
+use super::turned::Turned;
+use std::ops::Range;
+
+/// Cells that are kept around what was seen: what stands in one bars those beside it.
+const SPARE: usize = 2;
+
+impl Turned {
+    /// The samples that are blocked or occupied in each cell.
+    pub(super) fn look_at(&self, evidence: &Evidence, look: &Look) -> (Cells, Vec<Told>) {
+        let samples = self.samples as usize;
+        let frame = &evidence.grid.frame;
+        let sample = self.cell / samples as f64;
+        let is_fine = sample > 1.1 * frame.resolution;
+        // On the grid, in pixels: the first sample, and the steps to the next one along and across.
+        let at = |u: f64, v: f64| frame.to_pixels(self.to_map([self.start[0] + u, self.start[1] + v]));
+        let (origin, along, across) = (at(0.0, 0.0), at(sample, 0.0), at(0.0, sample));
+        let steps = [along, across].map(|p| [0, 1].map(|axis| p[axis] - origin[axis]));
+        let place = |a: f64, b: f64| [0, 1].map(|axis| origin[axis] + a * steps[0][axis] + b * steps[1][axis]);
+        // Where samples are pixels apart, the staircase of a wall one pixel thick has no gap in lanes of two pixels, and no
+        // pixel lies between so many looks along and across a cell.
+        let pixels = (self.cell / frame.resolution).round() as usize;
+        let thin = pixels.div_ceil(2).clamp(samples, u32::BITS as usize);
+        let looks = pixels.next_multiple_of(thin);
+        let make = |n: usize, first: usize, row: &mut [u8]| {
+            let lanes: [[f64; 2]; LANES] = std::array::from_fn(|j| place(0.5, (n * samples + j) as f64 + 0.5));
+            look.cells(&lanes[..samples], steps[0], first, row);
+            if is_fine {
+                let each = f64::from(self.samples) / looks as f64;
+                let step = steps[0].map(|step| step * each);
+                add_thin(row, [thin, looks], |k, stands, bit| {
+                    let lane = place(0.5 * each, (n * samples) as f64 + (k as f64 + 0.5) * each);
+                    look.mark(lane, step, [looks, first], bit, stands);
+                });
+                between_rays(row, self.samples.pow(2) as u8);
+            }
+            self.take(n, first, row);
+        };
+        let patches = evidence.recall.patches(evidence.grid, evidence.threads);
+        let key = |rows: Range<usize>| {
+            let lanes = [rows.start, rows.end].map(|n| place(0.0, (n * samples) as f64));
+            let under = |patches: &Patches| patches.under(lanes, steps[0], self.size[0] * samples);
+            let key = patches.map_or(Key::default(), under).with(rows.len() as u64).with(samples as u64);
+            let [low, high] = [rows.start, rows.end].map(|n| self.start[1] + n as f64 * self.cell);
+            self.grounds.key(key, &rows, [low, high])
+        };
+        let (seen, recall) = (self.seen(evidence, look), evidence.recall);
+        Cells::new(self.size, self.samples.pow(2) as u16, seen, Source { make, key }, recall, evidence.threads)
+    }
+
+    /// The part of the view in which something was seen of the map, and a few cells more.
+    fn seen(&self, evidence: &Evidence, look: &Look) -> Part {
+        let mut ends = [[usize::MAX, 0]; 2];
+        for &corner in look.seen() {
+            let place = self.place(evidence.grid.frame.to_metres(corner));
+            for axis in [0, 1] {
+                let cell = ((place[axis] - self.start[axis]) / self.cell).max(0.0) as usize;
+                let [from, to] = &mut ends[axis];
+                (*from, *to) = ((*from).min(cell), (*to).max(cell));
+            }
+        }
+        let part = |axis: usize| {
+            let [from, to] = ends[axis];
+            from.saturating_sub(SPARE).min(self.size[axis])..(to + SPARE + 1).min(self.size[axis])
+        };
+        Part { columns: part(0), rows: part(1) }
+    }
+
+    /// In a row of cells, from some column on, takes those whose middles lie in a rack that stands on legs.
+    fn take(&self, n: usize, first: usize, row: &mut [u8]) {
+        let v = self.start[1] + (n as f64 + 0.5) * self.cell;
+        for [from, to] in self.grounds.at(n, v) {
+            let column = |u: f64| ((u - self.start[0]) / self.cell + 0.5).max(0.0) as usize;
+            let within = column(from).max(first)..column(to).min(first + row.len());
+            let taken = self.samples.pow(2) as u8;
+            within.for_each(|column| row[column - first] = row[column - first] & 0xf0 | taken);
+        }
+    }
+}
+
+/// In a row of cells, what stands across a cell, or across it and the next, and is so thin that no sample lies on it: it
+/// shows in all of so many lanes, along each of which is looked so often. Single specks do not.
+fn add_thin(row: &mut [u8], [lanes, looks]: [usize; 2], look_along: impl Fn(usize, &mut [u32], u32)) {
+    let mut stands = vec![0; row.len() + 1];
+    (0..looks).for_each(|k| look_along(k, &mut stands[..row.len()], 1 << (k * lanes / looks)));
+    for (cell, near) in row.iter_mut().zip(stands.windows(2)) {
+        let is_across = (near[0] | near[1]).count_ones() as usize == lanes;
+        if is_across && near[0] != 0 && *cell < OCCUPIED {
+            *cell = (*cell).max(BLOCKED) + OCCUPIED - BLOCKED;
+        }
+    }
+}
