@@ -29,8 +29,8 @@ pub enum Closing {
     Whole,
 }
 
-/// Where a row's uprights may stand: along lines that lean as the direction does that they stand along.
-pub struct Uprights<'a> {
+/// The lines across a row along which something may close it: they lean as the direction does that crosses it.
+pub struct LinesAcross<'a> {
     pub look: &'a Look<'a>,
     pub frame: &'a Frame,
     pub view: &'a Turned,
@@ -41,7 +41,7 @@ pub struct Uprights<'a> {
     pub lean: f64,
 }
 
-impl Uprights<'_> {
+impl LinesAcross<'_> {
     /// How far the row is closed along the straight line near a place on which most stands.
     pub fn closing(&self, along: f64) -> Closing {
         let step = self.frame.resolution;

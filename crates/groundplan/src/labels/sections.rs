@@ -3,7 +3,7 @@
 //! A bay is as wide as the posts recur, and a row of empty ones is free from one end to the other. A way has another
 //! width, or the row is closed on both its sides.
 
-use super::closing::{Closing, Uprights};
+use super::closing::{Closing, LinesAcross};
 use super::look::Look;
 use super::rows::{Row, SHORTEST};
 use super::runs::runs;
@@ -40,7 +40,7 @@ const FACE: f64 = 0.25;
 pub struct Columns<'a> {
     view: &'a Turned,
     row: &'a Row,
-    uprights: Uprights<'a>,
+    lines: LinesAcross<'a>,
     /// From post to post, metres, where that is known.
     pitch: Option<f64>,
     /// For each column, share of it that is not free.
@@ -71,8 +71,8 @@ impl<'a> Columns<'a> {
         let lean = libm::cos(turn) / libm::sin(turn);
         let middle = f64::midpoint(row.across[0], row.across[1]);
         let count = ((row.along[1] - row.along[0]) / view.cell) as usize;
-        let uprights = Uprights { look, frame, view, across: row.across, middle, lean };
-        let mut made = Self { view, row, uprights, pitch, blocked: Vec::new(), faces: Vec::new(), stops: Vec::new() };
+        let lines = LinesAcross { look, frame, view, across: row.across, middle, lean };
+        let mut made = Self { view, row, lines, pitch, blocked: Vec::new(), faces: Vec::new(), stops: Vec::new() };
         let slices = (((row.across[1] - row.across[0]) / view.cell).round() as usize).max(1);
         let height = (row.across[1] - row.across[0]) / slices as f64;
         let slices: Vec<_> = (0..slices)
@@ -230,7 +230,7 @@ impl<'a> Columns<'a> {
 
     /// How the row is closed where a column begins.
     fn closing(&self, n: usize) -> Closing {
-        self.uprights.closing(self.place(n))
+        self.lines.closing(self.place(n))
     }
 
     /// True when what lies between two columns is free, and with what lies between cells as wide as a way.
