@@ -168,6 +168,25 @@ def test_ways_staggered_from_row_to_row_need_not_be_as_wide_as_those_at_the_wall
     assert sorted(across) == pytest.approx([3.8] * 4 + [5.0, 6.2], abs=0.2)
 
 
+@pytest.mark.parametrize("row", [0, 1, 2])
+def test_a_way_staggered_as_others_are_is_known_though_one_of_two_racks_at_its_side_is_empty(row: int) -> None:
+    # Three rows of two racks of 1 m back to back, 28 m long, and in each a way of 3.2 m at a place of its own. Shelves
+    # of 2.6 m are empty here and there, one of them at a side of one of the ways.
+    empty = [(0, 0, 120), (1, 1, 460), (2, 0, 480)]
+    picture = hall(560 + 144, 3 * 2 * DEPTH + 4 * AISLE)
+    for n, way in enumerate((380, 180, 300)):
+        low = 20 + AISLE + n * (AISLE + 2 * DEPTH)
+        picture[low : low + 2 * DEPTH, 20 + 72 : 20 + 72 + 560] = 0
+        picture[low : low + 2 * DEPTH, 92 + way : 92 + way + 64] = 254
+        places = [(rack, left) for of, rack, left in empty if of == n] + [(1, way - 52) for _ in range(n == row)]
+        for rack, left in places:
+            picture[low + rack * DEPTH : low + (rack + 1) * DEPTH, 92 + left : 92 + left + 52] = 254
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
+    assert sorted(across) == pytest.approx([3.2] * 3 + [3.6] * 2, abs=0.15)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 10
+
+
 def pallets(ends: tuple[int, int], count: int, taken: list[set[int]], off: int = 0) -> Picture:
     """A hall with a rack of bays of 2.7 m on posts in each row, between ways as wide as given, in pixels.
 

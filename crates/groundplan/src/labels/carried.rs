@@ -4,12 +4,11 @@
 use super::Evidence;
 use super::beside::{Beside, placed};
 use super::corridors::Strip;
-use super::gates::crossing;
 use super::look::Look;
+use super::passing::Place;
 use super::rows::{Row, SHORTEST};
 use super::sections::Columns;
 use super::turned::Turned;
-use super::widths::{Crossed, Place, longest};
 use crate::ends::{both, overlap, sorted, wider};
 use crate::grid::State;
 
@@ -65,16 +64,12 @@ pub fn without_ways(evidence: &Evidence, views: &[Turned], strips: &[Strip], on_
 /// the row before it, and the middles of the aisles beside that.
 fn each(views: &[Turned], strips: &[Strip], mut tell: impl FnMut(usize, &Lead, [f64; 2])) {
     let placed = placed(views, strips.iter().map(Strip::place));
-    let places = Place::of_each(views, strips, &placed);
-    let along = longest(&places, strips.len());
-    for (view, place) in views.iter().zip(&places) {
-        let Some(other) = crossing(views, view.direction) else { continue };
-        let crossed = Crossed::of_each([view, other], strips, &placed, place, &along);
-        for (n, crossed) in crossed.iter().enumerate().filter(|(_, crossed)| crossed.rows >= ROWS) {
-            for (row, between) in crossed.next.iter().map(|&m| &place.rows[m]) {
-                let lead = Lead { views: [view, other], row, strip: &strips[n] };
+    for Place { views, aisles, rows, passing } in Place::of_each(views, strips) {
+        for (n, own) in passing.iter().enumerate().filter(|(_, own)| own.rows >= ROWS) {
+            for (row, between) in own.next.iter().map(|&m| &rows[m]) {
+                let lead = Lead { views, row, strip: &strips[n] };
                 if lead.is_alone(n, strips, &placed) {
-                    tell(n, &lead, between.map(|aisle| strips[place.aisles[aisle]].middle()));
+                    tell(n, &lead, between.map(|aisle| strips[aisles[aisle]].middle()));
                 }
             }
         }

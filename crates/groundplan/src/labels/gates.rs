@@ -13,6 +13,7 @@ use super::widths::Widths;
 use crate::bands::flat_map_each;
 use crate::bits::Bits;
 use crate::ends::{around, overlap, wider};
+use std::cell::LazyCell;
 use std::ops::Range;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
@@ -42,15 +43,23 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     for (gate, is_doubtful) in through.at_walls(strips, &placed) {
         if is_doubtful { &mut doubtful } else { &mut gates }.push(gate);
     }
-    let between_racks = through.of_rows_alone();
-    let mut sure = Widths::of(views, strips.iter().filter(|strip| !strip.bays).chain(&gates));
+    let between_racks = through.between_racks();
+    let is_known = |strip: &&Strip| !strip.bays;
+    let known: Vec<Strip> = in_line(gates.clone()).into_iter().chain(strips.iter().filter(is_known).cloned()).collect();
+    let staggered = LazyCell::new(|| Widths::of_staggered(views, &known));
+    let mut sure = Widths::of(views, strips.iter().filter(is_known).chain(&gates));
     let through = through.find(strips, &mut sure);
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
     doubtful.retain(|gate| sure[gate.direction].is_empty() || sure[gate.direction].have(gate.width(), None));
     gates.extend(doubtful);
-    // Where no row beside tells a bay from a way, a way is as wide as others of the place.
-    let is_as_wide = |gate: &Strip, pitch| sure[gate.direction].have(gate.width() + BETWEEN_CELLS, pitch);
-    gates.extend(between_racks.into_iter().filter(|(gate, pitch)| is_as_wide(gate, *pitch)).map(|(gate, _)| gate));
+    // Where no row beside tells a bay from a way, a way is as wide as others of the place; and where ways are staggered from
+    // row to row, as those.
+    let is_as_wide = |gate: &Strip, pitch, is_alone| {
+        let widths = if is_alone { &sure } else { &*staggered };
+        widths[gate.direction].have(gate.width() + BETWEEN_CELLS, pitch)
+    };
+    let as_wide = between_racks.into_iter().filter(|(gate, pitch, is_alone)| is_as_wide(gate, *pitch, *is_alone));
+    gates.extend(as_wide.map(|(gate, ..)| gate));
     gates.retain(|gate| !through.iter().any(|way| is_in(gate, way)));
     gates.extend(through);
     in_line(gates)

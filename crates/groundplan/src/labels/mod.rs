@@ -34,6 +34,7 @@ mod near;
 mod onward;
 mod outline;
 mod paper;
+mod passing;
 mod patches;
 mod patterns;
 mod period;

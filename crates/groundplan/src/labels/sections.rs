@@ -261,6 +261,11 @@ impl<'a> Columns<'a> {
         free && self.pitch.is_some() && !self.is_as_bays([self.place(from), self.place(to)])
     }
 
+    /// True when a section is no wider than a bay.
+    pub fn is_as_a_bay(&self, [from, to]: [f64; 2]) -> bool {
+        self.pitch.is_some_and(|pitch| to - from <= BAY * pitch)
+    }
+
     /// True when a section is as wide as a bay, or as some beside one another.
     pub fn is_as_bays(&self, [from, to]: [f64; 2]) -> bool {
         self.pitch.is_some_and(|pitch| is_as_bays(to - from, pitch))

@@ -147,12 +147,14 @@ impl<'a> Through<'a> {
         found
     }
 
-    /// What lies between the racks of rows that no other row is beside, from aisle to aisle, and how far from post to post.
-    pub fn of_rows_alone(&self) -> Vec<(Strip, Option<f64>)> {
-        let alone = (0..self.rows.len()).filter(|&n| self.above[n].is_empty() && self.below[n].is_empty());
-        let gates = alone.map(|n| &self.rows[n]).flat_map(|seen| {
-            let gates = seen.columns.between_racks().into_iter().filter_map(|way| seen.gate(way));
-            gates.map(|gate| (gate, seen.views[0].pitch))
+    /// What lies between the racks of rows, from aisle to aisle, how far from post to post, and whether no other row is
+    /// beside: else what is as wide as a bay is none.
+    pub fn between_racks(&self) -> Vec<(Strip, Option<f64>, bool)> {
+        let gates = self.rows.iter().enumerate().flat_map(|(n, seen)| {
+            let is_alone = self.above[n].is_empty() && self.below[n].is_empty();
+            let ways = seen.columns.between_racks().into_iter();
+            let ways = ways.filter(move |way| is_alone || !seen.columns.is_as_a_bay(*way));
+            ways.filter_map(|way| seen.gate(way)).map(move |gate| (gate, seen.views[0].pitch, is_alone))
         });
         gates.collect()
     }

@@ -1,0 +1,163 @@
+//! What ways across rows pass through of the rows of a place, and beside which others they end.
+
+use super::beside::{Beside, placed};
+use super::corridors::{self, Strip};
+use super::gates::{crossing, leading_across};
+use super::rows::{self, Row};
+use super::turned::Turned;
+use super::whole;
+use crate::ends::{overlap, wider};
+use std::collections::BTreeMap;
+
+/// The aisles along a direction that another one crosses, and the rows between them.
+pub struct Place<'a> {
+    /// Of the direction that the rows run along, and of the one that crosses it.
+    pub views: [&'a Turned; 2],
+    pub aisles: Vec<usize>,
+    /// Each with the two aisles beside it.
+    pub rows: Vec<(Row, [usize; 2])>,
+    /// Of each strip.
+    pub passing: Vec<Passing>,
+}
+
+impl<'a> Place<'a> {
+    /// Of each direction that another one crosses.
+    pub fn of_each(views: &'a [Turned], strips: &[Strip]) -> Vec<Self> {
+        let placed = placed(views, strips.iter().map(Strip::place));
+        let halls = between_halls(views, strips);
+        let all: Vec<Layout> = views.iter().map(|view| Layout::new(views, strips, &placed, &halls, view)).collect();
+        let along = longest(&all, strips.len());
+        let of = |layout: Layout<'a>| {
+            let views = [layout.view, crossing(views, layout.view.direction)?];
+            let passing = layout.passed_by(views, strips, &placed, &along);
+            Some(Self { views, aisles: layout.aisles, rows: layout.rows, passing })
+        };
+        all.into_iter().filter_map(of).collect()
+    }
+}
+
+/// What a strip passes through of the rows of a place.
+#[derive(Clone, Default)]
+pub struct Passing {
+    pub rows: usize,
+    /// How long it is without what leads through them, from aisle to aisle, metres.
+    pub rest: f64,
+    /// Those beside them that it would lead through, were it longer.
+    pub next: Vec<usize>,
+    /// Another leads on through the next one, in line.
+    pub is_led_on: bool,
+    /// One of them goes on beyond both its sides.
+    pub is_within: bool,
+}
+
+/// Between which strips there is nothing but walls between halls, where no other crosses them.
+fn between_halls(views: &[Turned], strips: &[Strip]) -> BTreeMap<[usize; 2], bool> {
+    let extents: Vec<[f64; 2]> = strips.iter().map(|strip| strip.along).collect();
+    let rows = rows::between(views, strips, &extents);
+    let are_walls = whole::are_between_halls(views, &rows.iter().collect::<Vec<_>>());
+    let mut halls = BTreeMap::new();
+    for (row, is_wall) in rows.iter().zip(are_walls) {
+        row.between.into_iter().for_each(|between| *halls.entry(between).or_insert(true) &= is_wall);
+    }
+    halls
+}
+
+/// How long the longest row is that each strip runs along, metres.
+fn longest(all: &[Layout], strips: usize) -> Vec<f64> {
+    let mut along = vec![0.0_f64; strips];
+    for Layout { aisles, rows, .. } in all {
+        for (row, n) in rows.iter().flat_map(|(row, between)| between.map(|n| (row, aisles[n]))) {
+            along[n] = along[n].max(row.length());
+        }
+    }
+    along
+}
+
+/// The aisles along a direction, and the rows between them, each with the two beside it.
+struct Layout<'a> {
+    view: &'a Turned,
+    aisles: Vec<usize>,
+    rows: Vec<(Row, [usize; 2])>,
+    /// Which of the rows are walls between halls.
+    walls: Vec<bool>,
+}
+
+impl<'a> Layout<'a> {
+    fn new(
+        views: &[Turned],
+        strips: &[Strip],
+        placed: &[Beside],
+        halls: &BTreeMap<[usize; 2], bool>,
+        view: &'a Turned,
+    ) -> Self {
+        let is_aisle = |n: &usize| strips[*n].direction == view.direction && !rows::is_within_row(strips, placed, *n);
+        let aisles: Vec<usize> = (0..strips.len()).filter(is_aisle).collect();
+        let own: Vec<Strip> = aisles.iter().map(|&n| strips[n].clone()).collect();
+        let extents: Vec<[f64; 2]> = own.iter().map(|strip| strip.along).collect();
+        let rows = rows::between(views, &own, &extents).into_iter();
+        let rows: Vec<_> = rows.filter_map(|row| row.between.map(|between| (row, between))).collect();
+        let is_wall = |between: [usize; 2]| halls.get(&between.map(|n| aisles[n])).is_some_and(|is_wall| *is_wall);
+        let walls = rows.iter().map(|(_, between)| is_wall(*between)).collect();
+        Self { view, aisles, rows, walls }
+    }
+
+    /// What each strip passes through of the rows, which lie between aisles, along which it is not.
+    fn passed_by(
+        &self,
+        [view, other]: [&Turned; 2],
+        strips: &[Strip],
+        placed: &[Beside],
+        along: &[f64],
+    ) -> Vec<Passing> {
+        let Self { aisles, rows, walls, .. } = self;
+        let widest = corridors::widest(strips);
+        // Where a strip would cross a row if it were as long: along the strip, if it is none of the aisles' own kind.
+        let place = |n: usize, row: &Row, between: [usize; 2]| {
+            let strip = &strips[n];
+            let shorter = between.map(|n| strips[aisles[n]].length()).into_iter().fold(f64::INFINITY, f64::min);
+            let is_aisle = strip.length() >= shorter && along[n] >= row.length();
+            if strip.direction != other.direction || is_aisle {
+                return None;
+            }
+            let [s, u] = view.crossing(other, f64::midpoint(row.across[0], row.across[1]), strip.middle());
+            // Past a row's end it leads where one of its sides does: further off the next hall may lie.
+            let [from, to] = wider(row.along, strip.width() / 2.0);
+            (from..=to).contains(&u).then_some((s, u))
+        };
+        let crosses_at = |n: usize, m: usize| place(n, &rows[m].0, rows[m].1);
+        let crosses = |n: usize, s: f64| (strips[n].along[0]..=strips[n].along[1]).contains(&s);
+        // The rows above and below each aisle.
+        let mut beside: Vec<[Vec<usize>; 2]> = vec![Default::default(); aisles.len()];
+        let mut crossed: Vec<Vec<usize>> = vec![Vec::new(); strips.len()];
+        // And what leads through each row.
+        let mut through: Vec<Vec<usize>> = vec![Vec::new(); rows.len()];
+        for (m, (row, between)) in rows.iter().enumerate() {
+            beside[between[0]][0].push(m);
+            beside[between[1]][1].push(m);
+            for n in leading_across([view, other], placed, row, widest) {
+                if crosses_at(n, m).is_some_and(|(s, _)| crosses(n, s)) {
+                    crossed[n].push(m);
+                    through[m].push(n);
+                }
+            }
+        }
+        let of_strip = |(n, own): (usize, &Vec<usize>)| {
+            let middle = |n: usize| strips[aisles[n]].middle();
+            let led = |&m: &usize| middle(rows[m].1[1]) - middle(rows[m].1[0]);
+            let rest = own.iter().map(led).fold(strips[n].length(), |rest, led| rest - led);
+            let is_wall = |m: &usize| walls[*m] || own.iter().any(|&n| rows[*m].0.is_wall_beside(&rows[n].0));
+            let beside = |m: usize| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]);
+            let next = || own.iter().flat_map(|&m| beside(m)).filter(|m| !is_wall(m));
+            let ends_before = |m: &&usize| crosses_at(n, **m).is_some_and(|(s, _)| !crosses(n, s));
+            let is_in_line = |&other: &usize| other != n && overlap(strips[n].across, strips[other].across) > 0.0;
+            let is_led_on = next().any(|&m| through[m].iter().any(is_in_line));
+            let is_within = own.iter().any(|&m| {
+                let ([from, to], width) = (rows[m].0.along, strips[n].width());
+                crosses_at(n, m).is_some_and(|(_, u)| from + width < u && u < to - width)
+            });
+            let next = next().filter(ends_before).copied().collect();
+            Passing { rows: own.len(), rest, next, is_led_on, is_within }
+        };
+        crossed.iter().enumerate().map(of_strip).collect()
+    }
+}
