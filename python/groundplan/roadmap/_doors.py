@@ -106,13 +106,13 @@ class Regions:
     def free(self, region: int, points: list[Point], door: Place | None = None) -> bool:
         """Whether a line keeps clear of the region's walls, but at its door."""
         line = shapely.LineString(points)
-        if door is not None:
-            mouth = shapely.Point(door.centre).buffer((door.width or 1.0) / 2 + 2 * CLEAR_M)
-            # There the jambs are near; what stands in the way is not.
-            if line.intersection(mouth).difference(self.places[region].shape).length > THRESHOLD_M:
-                return False
-            line = line.difference(mouth)
-        if not line.is_empty and not self.space(region).covers(line):
+        # At the door the jambs are near; what stands in the way is not.
+        mouth = None if door is None else shapely.Point(door.centre).buffer((door.width or 1.0) / 2 + 2 * CLEAR_M)
+        inside = line if mouth is None else line.difference(mouth)
+        if not inside.is_empty and not self.space(region).covers(inside):
+            return False
+        # Asked last, for it is answered from the region's whole outline.
+        if mouth is not None and line.intersection(mouth).difference(self.places[region].shape).length > THRESHOLD_M:
             return False
         if self.pixels is None:
             return True
@@ -141,7 +141,9 @@ class Regions:
             return False
         far = [(px + depth * outwards[0], py + depth * outwards[1]) for px, py in points[::-1]]
         beyond = shapely.Polygon([*points, *far])
-        if not self.places[region].shape.buffer(THRESHOLD_M).covers(beyond) or beyond.intersects(self.racks):
+        # Of the region what is near alone: a fine map's has specks by the thousand.
+        near = self.places[region].shape.intersection(shapely.box(*beyond.buffer(2 * THRESHOLD_M).bounds))
+        if not near.buffer(THRESHOLD_M).covers(beyond) or beyond.intersects(self.racks):
             return False
         if self.pixels is None:
             return bool(beyond.distance(self.walls) > 0)
