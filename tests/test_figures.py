@@ -279,6 +279,14 @@ def test_nothing_is_left_half_written(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["survey.png"]
 
 
+@pytest.mark.parametrize(("width", "size"), [(0.5, None), (0.6, 4.5), (0.7, 4.5), (1.0, 6.2), (3.0, 9.0)])
+def test_a_name_is_written_where_the_least_type_fits_across_a_rack(width: float, size: float | None) -> None:
+    sizes: list[float] = []
+    names = _names.Names(10.0, lambda at, text, size, colour, zorder, angle: sizes.append(size))
+    _names.name_racks([{"kind": "rack", "name": "S1-01", "axis": [[0, 0], [9, 0]], "width": width}], names)
+    assert sizes == ([] if size is None else [pytest.approx(size)])
+
+
 def test_drawing_leaves_the_style_of_others_alone(tmp_path: Path) -> None:
     import matplotlib
 

@@ -25,6 +25,8 @@ LETTER, LINE = 0.66, 1.0
 CLEAR = 1.5
 #: Sizes of type along a corridor or a rack, points: it is left out where even the least does not fit.
 LEAST_TYPE, GREATEST_TYPE = 4.5, 9.0
+#: So much of the width the type takes, and the least type so much at most: capitals and digits are lower than a line.
+SHARE, MOST = 0.62, 0.8
 #: Of a region's name, the second where the first does not fit.
 REGION_TYPE = (6.5, 5.0)
 
@@ -142,7 +144,9 @@ def _name_along(label: Label, line: Points, at: Points, room: float, colour: str
     name = label.get("name")
     if not name:
         return
-    size = min(0.62 * label["width"] * names.dots, room * names.dots / (0.72 * len(name)), GREATEST_TYPE)
+    wide = label["width"] * names.dots
+    high = max(SHARE * wide, min(LEAST_TYPE, MOST * wide))
+    size = min(high, room * names.dots / (0.72 * len(name)), GREATEST_TYPE)
     if size >= LEAST_TYPE:
         angle = math.degrees(math.atan2(*(line[-1] - line[0])[::-1]))
         names.write(at, name, size, colour, 7, readable(angle))
