@@ -48,6 +48,7 @@ def with_bays(pitch: float | None, phase: float = 0.0) -> groundplan.Survey:
 
 def test_a_warehouse_has_a_node_at_each_junction_and_a_lane_between_neighbours() -> None:
     roads = road_map(plain())
+    assert repr(roads).startswith(f"RoadMap({len(roads.nodes)} nodes, {len(roads.lanes)} lanes, ")
     junctions = demo().of_kind("junction")
     assert len(roads.nodes) == len(junctions) == 15
     for node in roads.nodes:

@@ -127,7 +127,8 @@ def fitted(map: Map, patch: Any, row: int | None, column: int | None) -> tuple[B
     pixels = as_pixels(map, patch)
     whole = all(isinstance(n, int | np.integer) and not isinstance(n, bool) for n in (row, column))
     if row is None or column is None or not whole:
-        raise ParameterError("update.patch", f"row {row!r} and column {column!r} are not two whole numbers")
+        said = f"row {row!r} and column {column!r} are not two whole numbers"
+        raise ParameterError("update.patch", said, "update(patch, row, column), or update(map) of all of it")
     (height, width), (rows, columns) = map.pixels.shape, pixels.shape
     if row < 0 or column < 0 or row + rows > height or column + columns > width:
         said = f"a patch of {rows} rows and {columns} columns from row {row} and column {column} on"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -154,6 +154,9 @@ class RoadMap:
     faces: list[PickFace] = field(default_factory=list)
     zones: list[Zone] = field(default_factory=list)
     blocked: list[Blocked] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        return f"RoadMap({', '.join(f'{len(getattr(self, part.name))} {part.name}' for part in fields(self))})"
 
     def length(self, lane: Lane) -> float:
         """How long a lane is."""
