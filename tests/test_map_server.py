@@ -60,6 +60,13 @@ def test_a_key_like_one_that_is_missing_is_named(tmp_path: Path) -> None:
     assert read(write_yaml(tmp_path, resolution=None, resolutoin="0.05"), resolution=0.2).resolution == 0.2
 
 
+def test_an_image_without_resolution_names_the_yaml_beside_it(tmp_path: Path) -> None:
+    image = write_pgm(tmp_path / "map.pgm", hall())
+    assert str(refused(image, "map.resolution").hint).startswith("--resolution sets it")
+    yaml = write_yaml(tmp_path)
+    assert str(refused(image, "map.resolution").hint).startswith(f"did you mean {yaml}? Else --resolution sets it")
+
+
 def test_arguments_beat_the_yaml(tmp_path: Path) -> None:
     write_pgm(tmp_path / "map.pgm", hall())
     yaml = write_yaml(tmp_path, resolution="0", origin=None)

@@ -130,7 +130,7 @@ def read_or_leave(
     where = str(place)
     metres = described.resolution if metres is None else metres
     if metres is None:
-        hint = meant("resolution", described.misspelled) or "--resolution sets it, such as --resolution 0.05"
+        hint = meant("resolution", described.misspelled) or _resolution_hint(place, kind)
         raise MapError("map.resolution", f"{where} states no resolution", hint)
     pose = described.origin
     if origin is not None:
@@ -285,6 +285,13 @@ def _described(
             path, band=own.get("band"), resolution=resolution, min_hits=own.get("min_hits"), progress=progress
         )
     return Described(path)
+
+
+def _resolution_hint(place: Path, kind: str) -> str:
+    """What helps where no resolution is stated: the YAML beside an image, or the flag."""
+    beside = place.with_suffix(".yaml")
+    flag = "--resolution sets it, such as --resolution 0.05"
+    return f"did you mean {beside}? Else {flag}" if kind == "image" and beside.is_file() else flag
 
 
 def _refuse(path: Path, called: str, given: list[str]) -> None:
