@@ -130,6 +130,8 @@ def test_the_map_lies_beneath_the_drawing(yaw: float, tmp_path: Path) -> None:
     assert [file.name for file in written] == ["plan.dxf", "plan.underlay.png"]
     drawing = read(written[0])
     (image,) = on_layer(drawing, "map", "IMAGE")
+    # White names on a dark sheet are read on the picture's white floor.
+    assert 50 <= image.dxf.fade <= 80
     assert image.image_def.dxf.filename == "plan.underlay.png"
     assert (image.dxf.insert.x, image.dxf.insert.y) == pytest.approx((1200.5, -830.25))
     assert image.dxf.u_pixel.magnitude == pytest.approx(map.resolution)

@@ -30,6 +30,9 @@ PLACE = ("ID", "NAME", "KIND", "USE", "WIDTH", "AREA", "REGION")
 NODE = ("ID", "NAME", "KIND", "TYPE")
 #: Height of a name at most and at least, metres.
 TEXT_M, LEAST_TEXT_M = 0.6, 0.15
+#: The map's picture is blended with the sheet by so much, percent: names in the CAD's own colour, white on a dark sheet, are
+#: read on its white floor.
+FADE = 60
 
 
 def write(
@@ -94,7 +97,8 @@ class _Plan(Drawing):
         picture = self.doc.add_image_def(name, (map.width, map.height), name="MAP")
         corner, *_ = self.points(_underlay.corners(map))
         size = map.width * map.resolution * self.scale, map.height * map.resolution * self.scale
-        self.space.add_image(picture, corner, size, math.degrees(map.origin[2]), dxfattribs=self.on("map"))
+        held = self.on("map") | {"fade": FADE}
+        self.space.add_image(picture, corner, size, math.degrees(map.origin[2]), dxfattribs=held)
 
     def lines(self, survey: Survey) -> None:
         """Walls, and the lines of the directions across the map."""
