@@ -30,8 +30,8 @@ PLACE = ("ID", "NAME", "KIND", "USE", "WIDTH", "AREA", "REGION")
 NODE = ("ID", "NAME", "KIND", "TYPE")
 #: Height of a name at most and at least, metres.
 TEXT_M, LEAST_TEXT_M = 0.6, 0.15
-#: The map's picture is blended with the sheet by so much, percent: names in the CAD's own colour, white on a dark sheet, are
-#: read on its white floor.
+#: The map's picture is blended with the sheet by so much, percent: names in the CAD's own colour, white on a dark
+#: sheet, are read on its white floor.
 FADE = 60
 
 
