@@ -6,7 +6,7 @@ use super::beside::Beside;
 use super::corridors::{self, Strip};
 use super::onward;
 use super::recall::Key;
-use super::stretches::{Candidate, Found, Held, beyond, depth, fewest_seen, may_be_bay, ragged};
+use super::stretches::{Candidate, Found, Held, beyond, depth, fewest_faced, fewest_seen, may_be_bay, ragged};
 use super::sums::What;
 use super::sweep::Sweep;
 use super::turned::Turned;
@@ -55,14 +55,20 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     while width <= WIDEST * parameters.labels_max_width {
         let step = (STEP * width).max(view.cell);
         let extent = view.size[1] as f64 * view.cell;
-        let deep = (width >= NARROWEST).then_some(Held::Deep);
+        let both = if width >= NARROWEST { &[Held::Deep, Held::Thin][..] } else { &[Held::Thin] };
         for n in 0..((extent - width) / step).max(0.0) as usize {
             let low = view.start[1] + n as f64 * step;
             let across = [low, low + width];
-            if beyond(across).into_iter().any(|side| seen.between(side) < fewest_seen(view)) {
+            let any = |is: &dyn Fn([f64; 2]) -> bool| beyond(across).into_iter().any(is);
+            if any(&|side| seen.between(side) < fewest_seen(view)) {
                 continue;
             }
-            tried.push((across, deep));
+            let is_faced = !any(&|side| seen.on_lines(side) < fewest_faced(view));
+            let by: &[Held] = if is_faced { both } else { &both[..both.len() - 1] };
+            if by.is_empty() {
+                continue;
+            }
+            tried.push((across, by));
             lows.push(low);
             widest = widest.max(width);
         }
@@ -72,10 +78,10 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     let around = [depth_of_all, widest + depth_of_all];
     let sweep = Sweep { view, places: &lows, around, what: &[What::Blocked, What::Occupied] };
     let mut candidates = sweep.find(TOGETHER, threads, |near, n, found| {
-        let (across, deep) = tried[n];
-        let told = [may_be_bay(across, bay), deep.is_some()].map(u64::from);
+        let (across, by) = tried[n];
+        let told = [may_be_bay(across, bay), by.contains(&Held::Deep)].map(u64::from);
         let key = || told.into_iter().fold(view.key(across, depth(across)), Key::with);
-        let ways = evidence.recall.ragged.or_find(key, || Candidate::new(near.view(), across, bay).ways(deep));
+        let ways = evidence.recall.ragged.or_find(key, || Candidate::new(near.view(), across, bay).ways(by));
         found.extend(ways.iter().map(|way| Short::new(view, n, way)));
     });
     candidates.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.tried.cmp(&b.tried)));
@@ -175,11 +181,14 @@ pub fn clear_of(way: &Strip, others: &[Strip]) -> Option<Strip> {
     (along[1] - along[0] >= MOST * way.length()).then(|| Strip { along, ..way.clone() })
 }
 
-/// How much is occupied between two places across: where it is next to nothing, no column need be asked.
+/// How much is occupied between two places across, and how much structure lies on lines there: where it is next to
+/// nothing, no column need be asked.
 struct Seen<'a> {
     view: &'a Turned,
     /// Occupied samples below each row of cells.
     below: Vec<u64>,
+    /// Columns with structure on the lines below each one.
+    lined: Vec<usize>,
 }
 
 impl<'a> Seen<'a> {
@@ -188,7 +197,17 @@ impl<'a> Seen<'a> {
         for (n, row) in view.rows.iter().enumerate() {
             below.push(below[n] + row.occupied);
         }
-        Self { view, below }
+        let mut lined = vec![0];
+        for (n, line) in view.covered.iter().enumerate() {
+            lined.push(lined[n] + line.count(0..view.size[0]));
+        }
+        Self { view, below, lined }
+    }
+
+    /// Columns with structure on the lines that lie there, together.
+    fn on_lines(&self, [low, high]: [f64; 2]) -> f64 {
+        let lines = self.view.lines(low, high);
+        (self.lined[lines.end] - self.lined[lines.start]) as f64
     }
 
     /// Occupied samples, a row to either side included.

@@ -117,6 +117,10 @@ impl<'a> Candidate<'a> {
         if !enough(all.len() - stretch.unclear.count(all.clone()), by.least_clear()) {
             return None;
         }
+        // Sides that are thin need lines along them, of which mostly there are none: these are counted soonest.
+        if by == Held::Thin && beyond(self.across).iter().any(|side| !self.may_face(stretch, *side, least)) {
+            return None;
+        }
         let low = self.held(stretch, by, 0);
         if !enough(low.count(all.clone()), LEAST_HELD) {
             return None;
@@ -138,6 +142,13 @@ impl<'a> Candidate<'a> {
         };
         let scores = all.map(score).collect();
         Some(Columns { held, both, scores })
+    }
+
+    /// True when so many columns of a stretch may hold a way that has structure along lines on a side.
+    fn may_face(&self, stretch: &Stretch, [low, high]: [f64; 2], least: usize) -> bool {
+        let lines = &self.view.covered[self.view.lines(low, high)];
+        let most: usize = lines.iter().map(|line| line.count(stretch.columns.clone())).sum();
+        most as f64 / least as f64 >= LEAST_FACED
     }
 
     /// In which columns of a stretch a side holds.
@@ -165,14 +176,13 @@ impl<'a> Candidate<'a> {
         ((by.shortest(self.across[1] - self.across[0]) / self.view.cell) as usize).max(1)
     }
 
-    /// The ways along it, those with deep sides first, if such are asked for.
-    pub fn ways(&self, deep: Option<Held>) -> Vec<Found> {
+    /// The ways along it, of what may hold their sides.
+    pub fn ways(&self, by: &[Held]) -> Vec<Found> {
         // Where a short way fits, a long one may.
-        let kinds = deep.into_iter().chain([Held::Thin]);
-        let least = kinds.clone().map(|by| self.least(by)).min().unwrap_or(1);
+        let least = by.iter().map(|&by| self.least(by)).min().unwrap_or(1);
         let stretches = self.stretches(0..self.view.size[0], least, &[]);
         let found = |by: Held| self.ways_in(by, &stretches).into_iter().map(move |(way, is_cut)| (way, by, is_cut));
-        kinds.flat_map(found).collect()
+        by.iter().copied().flat_map(found).collect()
     }
 
     /// The ways along it that rivals leave, among some columns.
@@ -283,6 +293,12 @@ pub fn ragged(view: &Turned, along: [f64; 2], across: [f64; 2], score: f64) -> S
         unseen: [false; 2],
         held: UNTOLD,
     }
+}
+
+/// On fewer columns of all lines at a side together there is none of a way whose sides are thin.
+pub fn fewest_faced(view: &Turned) -> f64 {
+    // A column less, for what floats round.
+    LEAST_FACED * (VERY_LONG.0 / view.cell - 1.0)
 }
 
 /// In fewer columns nothing seen stands at a side of any way.
