@@ -1,8 +1,8 @@
 //! Passes over pixels as sums over row bands: any number of threads gives the same bytes.
 
 use std::ops::Range;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, OnceLock};
 use std::thread::{Scope, ScopedJoinHandle};
 
 /// Rows of one band: few enough to share out evenly.
@@ -87,6 +87,32 @@ impl<T> Later<'_, T> {
             Self::Made(made) => made,
             Self::Started(handle) => handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
         }
+    }
+}
+
+/// What was started and is asked for by several.
+pub struct Awaited<'scope, T> {
+    started: Mutex<Option<Later<'scope, T>>>,
+    made: OnceLock<T>,
+}
+
+impl<'scope, T> Awaited<'scope, T> {
+    pub fn new(started: Later<'scope, T>) -> Self {
+        Self { started: Mutex::new(Some(started)), made: OnceLock::new() }
+    }
+
+    /// What was made: whoever asks first waits for it, and the others for that one.
+    pub fn get(&self) -> &T {
+        self.made.get_or_init(|| {
+            let started = self.started.lock().ok().and_then(|mut started| started.take());
+            started.map_or_else(|| unreachable!("it is taken once, unless making it has panicked"), Later::get)
+        })
+    }
+
+    /// And no longer shared.
+    pub fn into_made(self) -> T {
+        self.get();
+        self.made.into_inner().unwrap_or_else(|| unreachable!("it has just been made"))
     }
 }
 

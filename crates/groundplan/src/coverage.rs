@@ -1,6 +1,7 @@
 //! II-D: O(edge), and where on the edges it lies, by the edge pixels that cover them.
 
 use crate::arrangement::Arrangement;
+use crate::bands::each;
 use crate::bits::{self, WORD, lowest};
 use crate::directions::Directions;
 use crate::ends::{around, sorted};
@@ -26,6 +27,23 @@ pub struct Covered {
     pub shares: Vec<f64>,
     pub runs: Vec<[f64; 2]>,
     pub offsets: Vec<u32>,
+}
+
+impl Covered {
+    /// What all edge pixels cover.
+    pub fn new(
+        frame: &Frame,
+        arrangement: &Arrangement,
+        directions: &Directions,
+        lines: &Lines,
+        gradients: &Gradients,
+        parameters: &Parameters,
+        threads: usize,
+    ) -> Self {
+        let mut coverage = Coverage::new(frame, arrangement, directions, lines, parameters);
+        coverage.add(gradients, threads);
+        coverage.of_edges(arrangement)
+    }
 }
 
 /// The parts of each line's length that edge pixels cover which lie on it.
@@ -93,18 +111,19 @@ impl<'a> Coverage<'a> {
     }
 
     /// With what some edge pixels cover.
-    pub fn add(&mut self, gradients: &Gradients) {
-        for Family { angle, heading: [cos, sin], words, members } in &mut self.families {
+    pub fn add(&mut self, gradients: &Gradients, threads: usize) {
+        let Self { diagonal, tolerance, families, .. } = self;
+        each(families.iter_mut().collect(), threads, |Family { angle, heading: [cos, sin], words, members }| {
             let bins = words.start * WORD..words.end * WORD;
             let offsets: Vec<f64> = members.iter().map(|member| member.offset).collect();
             let lines = OnLine::new(&offsets, FARTHEST_PIXELS);
             gradients.iter().for_each(|(pixel, along, magnitude)| {
-                if weight(f64::from(along), magnitude, *angle, self.tolerance) == 0 {
+                if weight(f64::from(along), magnitude, *angle, *tolerance) == 0 {
                     return;
                 }
                 let (x, y) = (f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
                 let offset = y * *cos - x * *sin;
-                let place = x * *cos + y * *sin + self.diagonal;
+                let place = x * *cos + y * *sin + *diagonal;
                 for member in &mut members[lines.at(offset)] {
                     if (member.offset - offset).abs() <= member.reach {
                         let bits = &mut member.covered;
@@ -119,7 +138,7 @@ impl<'a> Coverage<'a> {
                     }
                 }
             });
-        }
+        });
     }
 
     /// O(edge), and where on each edge it lies.

@@ -1,7 +1,7 @@
 //! II-D: O(face), by what the pixels add to it, and O(edge).
 
 use crate::arrangement::Arrangement;
-use crate::coverage::{Coverage, Covered};
+use crate::coverage::Covered;
 use crate::directions::Directions;
 use crate::gradients::Gradients;
 use crate::grid::{Frame, State, tidy};
@@ -95,7 +95,5 @@ pub fn find_occupancy(
     gradients: &Gradients,
     parameters: &Parameters,
 ) -> Occupancy {
-    let mut coverage = Coverage::new(frame, arrangement, directions, lines, parameters);
-    coverage.add(gradients);
-    Occupancy::of_faces(sums).with(coverage.of_edges(arrangement))
+    Occupancy::of_faces(sums).with(Covered::new(frame, arrangement, directions, lines, gradients, parameters, 1))
 }

@@ -7,7 +7,7 @@ use crate::bands::side_by_side;
 use crate::coverage::Coverage;
 use crate::gradients::Gradients;
 use crate::grid::{Frame, Grid};
-use crate::labels::{Division, Ground, Memory, Recall, Sight, Sketch, find_confidence, find_labels_in, find_patterns};
+use crate::labels::{Division, Ground, Memory, Recall, Sight, Sketch, find_labels_in, find_patterns};
 use crate::occupancy::Occupancy;
 use crate::parameters::Parameters;
 use crate::subdivision::Subdivision;
@@ -47,7 +47,7 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
         let centres = Subdivision::new(frame, arrangement, threads).centres;
         (Subdivision { centres, ..Subdivision::default() }, occupancy, coverage)
     };
-    coverage.add(&structure.gradients);
+    coverage.add(&structure.gradients, threads);
     let sight = {
         let evidence = structure.evidence(grid, parameters, threads, &recall);
         side_by_side(1, |side| Sight::lined(&evidence, Ground::start(side, grid, threads, &recall)))
@@ -56,10 +56,9 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
     structure.gradients = structure.gradients.specks();
     let (labels, confidence) = {
         let evidence = structure.evidence(grid, parameters, threads, &recall);
-        let division = Division { subdivision: &subdivision, occupancy: &occupancy, adjacency: &Adjacency::default() };
-        let labels = find_labels_in(&evidence, &division, Sketch::new(&evidence, sight.seen(&evidence)));
-        let confidence = find_confidence(&evidence, &labels);
-        (labels, confidence)
+        let no_links = Adjacency::default();
+        let division = Division { subdivision: &subdivision, occupancy: &occupancy, adjacency: &no_links };
+        find_labels_in(&evidence, || division, Sketch::new(&evidence, sight.seen(&evidence)))
     };
     drop((subdivision, occupancy));
     structure.gradients = Gradients::default();

@@ -2,16 +2,17 @@
 
 use crate::adjacency::{Adjacency, find_adjacency};
 use crate::arrangement::arrange;
-use crate::bands::{side_by_side, worth};
+use crate::bands::{Awaited, Later, side_by_side, worth};
+use crate::coverage::Covered;
 use crate::directions::{Directions, find_directions};
 use crate::gradients::{Gradients, find_gradients};
 use crate::grid::{Frame, Grid};
 use crate::labels::{
-    Division, Evidence, Ground, Label, Memory, Pattern, Recall, Sight, Sketch, find_confidence, find_labels,
-    find_labels_in, find_patterns, find_uprights,
+    Division, Evidence, Glance, Ground, Label, Memory, Pattern, Recall, Scene, Sight, Sketch, find_confidence,
+    find_labels, find_labels_in, find_patterns, find_uprights,
 };
 use crate::lines::{Lines, find_lines};
-use crate::occupancy::{Occupancy, find_occupancy};
+use crate::occupancy::Occupancy;
 use crate::parameters::{Method, Parameters};
 use crate::radiograms::{Radiogram, find_radiograms};
 use crate::sparing;
@@ -75,6 +76,27 @@ pub struct Given {
     pub keep: bool,
 }
 
+impl Given {
+    /// Those that are given, or else found.
+    fn gradients(&mut self, grid: &Grid, parameters: &Parameters, threads: usize) -> Gradients {
+        self.gradients.take().unwrap_or_else(|| find_gradients(grid, parameters, threads))
+    }
+
+    fn directions(
+        &mut self,
+        frame: &Frame,
+        gradients: &Gradients,
+        parameters: &Parameters,
+        threads: usize,
+    ) -> Directions {
+        self.directions.take().unwrap_or_else(|| find_directions(frame, gradients, parameters, threads))
+    }
+
+    fn lines(&mut self, radiograms: &[Radiogram], parameters: &Parameters, threads: usize) -> Lines {
+        self.lines.take().unwrap_or_else(|| find_lines(radiograms, parameters, threads))
+    }
+}
+
 /// Surveys a grid. Total: any grid and parameters give a valid subdivision, at worst one face, and warnings.
 #[must_use]
 pub fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, threads: usize) -> Survey {
@@ -83,31 +105,56 @@ pub fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, threads: u
     if strips && !given.keep && sparing::is_large(frame) {
         return survey_sparingly(grid, parameters, given, threads);
     }
-    // What the labels need of the pixels alone, and then of the lines, is made beside the other stages.
+    // What the labels need of the pixels alone, and then of the directions and of the lines, is made beside the other stages.
     let recall = Recall::new(given.keep.then(|| given.memory.take().unwrap_or_default()));
     let mut survey = side_by_side(threads, |side| {
         let ground = strips.then(|| Ground::start(side, grid, threads, &recall));
-        // And what is looked for in the edge pixels alone, beside what lines up.
-        let upright = |gradients: &Gradients| strips.then(|| find_uprights(frame, &gradients.pixels));
-        let (structure, uprights) = Structure::beside(grid, parameters, &mut given, threads, upright);
-        let evidence = structure.evidence(grid, parameters, threads, &recall);
-        let (divided, labels, confidence) = side_by_side(threads, |side| {
-            let divided = side.start(|| Divided::new(&evidence, given.sums));
-            let sketch = ground.map(|ground| {
-                Sketch::beside(&evidence, Sight::new(side, &evidence, ground, &uprights.unwrap_or_default()))
-            });
-            let divided = divided.get();
-            let Divided { subdivision, occupancy, adjacency, .. } = &divided;
-            let division = Division { subdivision, occupancy, adjacency };
-            let labels = match sketch {
-                Some(sketch) => find_labels_in(&evidence, &division, sketch),
-                None => find_labels(&evidence, &division),
-            };
-            let confidence = find_confidence(&evidence, &labels);
-            (divided, labels, confidence)
+        let gradients = given.gradients(grid, parameters, threads);
+        // What is looked for in the edge pixels alone, beside what lines up.
+        let (directions, uprights) = side_by_side(worth(frame.width * frame.height, threads), |side| {
+            let uprights = strips.then(|| side.start(|| find_uprights(frame, &gradients.pixels)));
+            (given.directions(frame, &gradients, parameters, threads), uprights.map(Later::get))
         });
-        let Divided { subdivision, occupancy, walls, .. } = divided;
-        let Structure { gradients, directions, radiograms, lines } = structure;
+        let scene = Scene { grid, directions: &directions, threads, recall: &recall };
+        let (radiograms, lines, divided, walls, labels, confidence) = side_by_side(threads, |side| {
+            let seen = ground.zip(uprights).map(|(Ground { look, space }, uprights)| {
+                (space, side.start(move || Glance::new(&scene, look.get(), &uprights)))
+            });
+            let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
+            let lines = given.lines(&radiograms, parameters, threads);
+            let (gradients, directions) = (&gradients, &directions);
+            let evidence =
+                Evidence { grid, gradients, directions, lines: &lines, parameters, threads, recall: &recall };
+            let (divided, walls, labels, confidence) = side_by_side(threads, |side| {
+                let divided = side.start(|| Divided::new(&evidence, given.sums));
+                let sketch =
+                    seen.map(|(space, glance)| Sketch::beside(&evidence, Sight::new(side, &evidence, space, glance)));
+                let divided = Awaited::new(divided);
+                let walls = || find_walls(&divided.get().subdivision, &divided.get().occupancy, parameters);
+                let with = |adjacency| {
+                    let Divided { subdivision, occupancy } = divided.get();
+                    Division { subdivision, occupancy, adjacency }
+                };
+                let (walls, (labels, confidence)) = if let Some(sketch) = sketch {
+                    // Labels by strips ask nothing of walls, and of faces last.
+                    let no_links = Adjacency::default();
+                    side_by_side(threads, |side| {
+                        let walls = side.start(walls);
+                        let labels = find_labels_in(&evidence, || with(&no_links), sketch);
+                        (walls.get(), labels)
+                    })
+                } else {
+                    let walls = walls();
+                    let adjacency = find_adjacency(&divided.get().subdivision.edge_faces, &walls.cogent);
+                    let labels = find_labels(&evidence, &with(&adjacency));
+                    let confidence = find_confidence(&evidence, &labels);
+                    (walls, (labels, confidence))
+                };
+                (divided.into_made(), walls, labels, confidence)
+            });
+            (radiograms, lines, divided, walls, labels, confidence)
+        });
+        let Divided { subdivision, occupancy } = divided;
         let patterns = find_patterns(&directions, &labels);
         let warnings = Vec::new();
         Survey {
@@ -152,29 +199,12 @@ pub(crate) struct Structure {
 
 impl Structure {
     pub fn new(grid: &Grid, parameters: &Parameters, given: &mut Given, threads: usize) -> Self {
-        Self::beside(grid, parameters, given, threads, |_| ()).0
-    }
-
-    /// The same, and beside it what is made of the gradients.
-    fn beside<T: Send>(
-        grid: &Grid,
-        parameters: &Parameters,
-        given: &mut Given,
-        threads: usize,
-        make: impl FnOnce(&Gradients) -> T + Send,
-    ) -> (Self, T) {
         let frame = &grid.frame;
-        let gradients = given.gradients.take().unwrap_or_else(|| find_gradients(grid, parameters, threads));
-        let ((directions, radiograms, lines), made) =
-            side_by_side(worth(frame.width * frame.height, threads), |side| {
-                let made = side.start(|| make(&gradients));
-                let found = || find_directions(frame, &gradients, parameters, threads);
-                let directions = given.directions.take().unwrap_or_else(found);
-                let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
-                let lines = given.lines.take().unwrap_or_else(|| find_lines(&radiograms, parameters, threads));
-                ((directions, radiograms, lines), made.get())
-            });
-        (Self { gradients, directions, radiograms, lines }, made)
+        let gradients = given.gradients(grid, parameters, threads);
+        let directions = given.directions(frame, &gradients, parameters, threads);
+        let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
+        let lines = given.lines(&radiograms, parameters, threads);
+        Self { gradients, directions, radiograms, lines }
     }
 
     /// What labels are found from.
@@ -194,8 +224,6 @@ impl Structure {
 struct Divided {
     subdivision: Subdivision,
     occupancy: Occupancy,
-    walls: Walls,
-    adjacency: Adjacency,
 }
 
 impl Divided {
@@ -204,13 +232,13 @@ impl Divided {
         let frame = &grid.frame;
         let arrangement = arrange(frame, &directions.angles, lines, threads);
         let fits = |sums: &FaceSums| sums.fits(&arrangement);
-        let sums = given.filter(fits).unwrap_or_else(|| FaceSums::new(grid, &arrangement, 0..frame.height, threads));
-        let occupancy = find_occupancy(frame, &sums, &arrangement, directions, lines, gradients, parameters);
-        drop(sums);
-        let subdivision = Subdivision::new(frame, arrangement, threads);
-        let walls = find_walls(&subdivision, &occupancy, parameters);
-        let adjacency = find_adjacency(&subdivision.edge_faces, &walls.cogent);
-        Self { subdivision, occupancy, walls, adjacency }
+        let found = || FaceSums::new(grid, &arrangement, 0..frame.height, threads);
+        let occupancy = side_by_side(threads, |side| {
+            let covered = || Covered::new(frame, &arrangement, directions, lines, gradients, parameters, threads);
+            let covered = side.start(covered);
+            Occupancy::of_faces(&given.filter(fits).unwrap_or_else(found)).with(covered.get())
+        });
+        Self { subdivision: Subdivision::new(frame, arrangement, threads), occupancy }
     }
 }
 

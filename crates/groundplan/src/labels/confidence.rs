@@ -65,6 +65,11 @@ impl Kinds {
 /// For each label how sure it is, 0 to 1.
 #[must_use]
 pub fn find_confidence(evidence: &Evidence, labels: &[Label]) -> Vec<f64> {
+    confidence(labels, &each_by_itself(evidence, labels))
+}
+
+/// How sure each of some labels is by itself; where there are junctions, the corridors that meet there come first.
+pub(crate) fn each_by_itself(evidence: &Evidence, labels: &[Label]) -> Vec<f64> {
     let Evidence { grid, threads, recall, .. } = *evidence;
     let ask = |map: &Looks, label: &Label| match label {
         Label::Corridor { axis, width, .. } => map.corridor(*axis, *width),
@@ -83,14 +88,18 @@ pub fn find_confidence(evidence: &Evidence, labels: &[Label]) -> Vec<f64> {
         recall.sure.or_look(patches, || key(labels, label), look)
     };
     let parts: Vec<&[Label]> = labels.chunks(TOGETHER).collect();
-    let own = map_each(parts.len(), threads, |n| parts[n].iter().map(sure).collect::<Vec<_>>()).concat();
-    let kinds = Kinds::new(labels, &own);
+    map_each(parts.len(), threads, |n| parts[n].iter().map(sure).collect::<Vec<_>>()).concat()
+}
+
+/// How sure all labels are beside one another, by how sure each is by itself.
+pub(crate) fn confidence(labels: &[Label], own: &[f64]) -> Vec<f64> {
+    let kinds = Kinds::new(labels, own);
     let witnessed = |(label, own): (&Label, &f64)| match label {
         Label::Rack { width, .. } => kinds.witnessed(*width, *own),
         _ => *own,
     };
     let rounded = |sure: f64| (sure.clamp(0.0, 1.0) * 1000.0).round() / 1000.0;
-    labels.iter().zip(&own).map(witnessed).map(rounded).collect()
+    labels.iter().zip(own).map(witnessed).map(rounded).collect()
 }
 
 /// The key of all that is asked about a label but for the map.

@@ -9,6 +9,7 @@ use super::rows::{self, DEPTH};
 use super::shut;
 use super::sided;
 use super::turned::Turned;
+use crate::bands::flat_map_each;
 use crate::ends::{overlap, shared, wider};
 
 /// A corridor that meets no other and is shorter than one alone is so long, metres, and so many others that are alike run
@@ -80,7 +81,7 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
                 && one.max(two) < NICHES.1
                 && is_shut(n)
         };
-        let mut stays: Vec<bool> = (0..strips.len()).map(leads).collect();
+        let mut stays = flat_map_each(strips.len(), threads, |n| [leads(n)]);
         if !stays.contains(&false) {
             stays = (0..strips.len()).map(|n| !faces(n)).collect();
         }

@@ -1,9 +1,9 @@
 //! The ground of racks that stand on legs, in the places of a view: it is taken, though the map shows floor there.
 
-use super::Evidence;
 use super::recall::Key;
 use super::rows::Row;
 use super::turned::{Turned, rectangle};
+use crate::directions::Directions;
 use crate::ends::{around, sorted};
 use std::ops::Range;
 
@@ -22,8 +22,8 @@ pub struct Grounds {
 }
 
 impl Grounds {
-    pub fn new(evidence: &Evidence, view: &Turned, racks: &[Row]) -> Self {
-        let corners = |rack: &Row| on_map(evidence, rack).map(|corner| view.place(corner));
+    pub fn new(directions: &Directions, view: &Turned, racks: &[Row]) -> Self {
+        let corners = |rack: &Row| on_map(directions, rack).map(|corner| view.place(corner));
         let corners: Vec<_> = racks.iter().map(corners).collect();
         let mut near = vec![Vec::new(); if racks.is_empty() { 0 } else { view.size[1] / ROWS + 1 }];
         for (n, corners) in (0u32..).zip(&corners) {
@@ -60,8 +60,8 @@ impl Grounds {
 }
 
 /// The corners of a row in the map frame, counter-clockwise.
-pub fn on_map(evidence: &Evidence, row: &Row) -> [[f64; 2]; 4] {
-    let angle = evidence.directions.angles[row.direction];
+pub fn on_map(directions: &Directions, row: &Row) -> [[f64; 2]; 4] {
+    let angle = directions.angles[row.direction];
     let [cos, sin] = [libm::cos(angle), libm::sin(angle)];
     rectangle(row.along, row.across).map(|[u, v]| [u * cos - v * sin, u * sin + v * cos])
 }

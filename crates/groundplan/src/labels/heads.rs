@@ -12,6 +12,7 @@ use super::rows::Row;
 use super::sections::Columns;
 use super::shut;
 use super::turned::Turned;
+use crate::bands::flat_map_each;
 use crate::ends::{around, overlap, sorted};
 use crate::grid::Frame;
 use crate::parameters::Parameters;
@@ -48,7 +49,7 @@ pub fn with(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
         }
         for chain in chains(strips, rows, view.direction) {
             for side in [0, 1] {
-                let heads = Heads { look, frame, view, other, strips, side, parameters };
+                let heads = Heads { look, frame, view, other, strips, side, parameters, threads: evidence.threads };
                 for way in heads.ways(&chain) {
                     known.add(way);
                 }
@@ -100,6 +101,7 @@ struct Heads<'a> {
     strips: &'a [Strip],
     side: usize,
     parameters: &'a Parameters,
+    threads: usize,
 }
 
 impl Heads<'_> {
@@ -112,7 +114,7 @@ impl Heads<'_> {
             let [free, empty] = self.free(row, f64::midpoint(one, two));
             ((one - two).abs() <= IN_LINE && free >= least).then_some((f64::midpoint(one, two), free, empty))
         };
-        let ends: Vec<Option<(f64, f64, f64)>> = chain.iter().map(before).collect();
+        let ends: Vec<Option<(f64, f64, f64)>> = flat_map_each(chain.len(), self.threads, |n| [before(&chain[n])]);
         let mut found = Vec::new();
         let mut from = 0;
         while from < chain.len() {

@@ -2,7 +2,7 @@
 //! one pitch. Two legs that stand across from each other make a frame, as does a plate that joins them; frames that
 //! follow one another at one pitch with the same two faces are a rack, where there is another of the kind.
 
-use super::Evidence;
+use super::Scene;
 use super::blocks;
 use super::frames::{AISLE, BACK, Frame, Legs, NEAR, frames};
 use super::grounds::on_map;
@@ -10,8 +10,9 @@ use super::near::Near;
 use super::rows::Row;
 use super::uprights::Upright;
 use crate::bands::{map_each, worth};
+use crate::directions::Directions;
 use crate::ends::{both, overlap};
-use crate::grid::State;
+use crate::grid::{Grid, State};
 use std::collections::BTreeMap;
 
 /// From frame to frame, metres, and in depths at least.
@@ -44,14 +45,14 @@ struct Rack {
 }
 
 /// The racks that some uprights are legs of, along each direction.
-pub fn find(evidence: &Evidence, uprights: &[Upright]) -> Vec<Row> {
-    let Evidence { grid, directions, threads, .. } = *evidence;
+pub fn find(scene: &Scene, uprights: &[Upright]) -> Vec<Row> {
+    let Scene { grid, directions, threads, .. } = *scene;
     let threads = worth(grid.frame.width * grid.frame.height, threads);
     let along = |direction: usize| {
         let angle = directions.angles[direction];
         let heading = [libm::cos(angle), libm::sin(angle)];
         let (frames, legs) = frames(uprights, heading);
-        let map = Map { evidence, heading };
+        let map = Map { grid, heading };
         let mut found: Vec<Rack> = in_rows(&frames, &legs).iter().map(|row| rack(direction, row, &legs)).collect();
         found.retain(|rack| blocks::is_oblong(&rack.row) && map.shows_floor(&rack.row));
         let found = back_to_back(found);
@@ -64,14 +65,14 @@ pub fn find(evidence: &Evidence, uprights: &[Upright]) -> Vec<Row> {
     // Legs of more than one direction's racks are of that which has most of them in a row.
     racks.sort_by_key(|rack| std::cmp::Reverse(rack.frames));
     let rows: Vec<Row> = racks.into_iter().map(|rack| rack.row).collect();
-    let corners: Vec<_> = rows.iter().map(|row| on_map(evidence, row).to_vec()).collect();
+    let corners: Vec<_> = rows.iter().map(|row| on_map(directions, row).to_vec()).collect();
     let near = Near::polygons(&corners);
     let mut stays = vec![false; rows.len()];
     for (n, row) in rows.iter().enumerate() {
         let is_same = |m: u32| {
             let other = &rows[m as usize];
             let is_kept = stays[m as usize] && other.direction != row.direction;
-            is_kept && (holds_middle(evidence, other, row) || holds_middle(evidence, row, other))
+            is_kept && (holds_middle(directions, other, row) || holds_middle(directions, row, other))
         };
         stays[n] = !near.beside(&corners[n]).into_iter().any(is_same);
     }
@@ -79,8 +80,8 @@ pub fn find(evidence: &Evidence, uprights: &[Upright]) -> Vec<Row> {
 }
 
 /// True when a row holds the middle of another.
-fn holds_middle(evidence: &Evidence, row: &Row, other: &Row) -> bool {
-    let [own, its] = [row, other].map(|row| evidence.directions.angles[row.direction]);
+fn holds_middle(directions: &Directions, row: &Row, other: &Row) -> bool {
+    let [own, its] = [row, other].map(|row| directions.angles[row.direction]);
     let (sin, cos) = (libm::sin(its - own), libm::cos(its - own));
     let [u, v] = [other.along, other.across].map(|ends| f64::midpoint(ends[0], ends[1]));
     (row.along[0]..=row.along[1]).contains(&(u * cos - v * sin))
@@ -190,14 +191,14 @@ fn leaning(map: &Map, racks: &[Rack], frames: &[Frame], frame: &Frame) -> Option
 
 /// The map, asked place by place.
 struct Map<'a> {
-    evidence: &'a Evidence<'a>,
+    grid: &'a Grid<'a>,
     heading: [f64; 2],
 }
 
 impl Map<'_> {
     fn state(&self, [u, v]: [f64; 2]) -> State {
         let [cos, sin] = self.heading;
-        self.evidence.grid.state_at([u * cos - v * sin, u * sin + v * cos])
+        self.grid.state_at([u * cos - v * sin, u * sin + v * cos])
     }
 
     /// True when something stands across so much of a row's depth at a place along it.

@@ -19,7 +19,7 @@ const STRONG: (f64, f64) = (2.0, 0.08);
 
 impl Turned {
     /// Its lines, and in which columns something lies along each or touches it; racks on legs have their sides as lines.
-    pub(super) fn cover_lines(&mut self, evidence: &Evidence) {
+    pub fn line(&mut self, evidence: &Evidence) {
         let frame = &evidence.grid.frame;
         let lines = evidence.lines;
         let strong = STRONG.0.min(STRONG.1 * lines.typical_amplitude());

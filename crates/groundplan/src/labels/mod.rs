@@ -83,8 +83,7 @@ use crate::subdivision::Subdivision;
 use crate::tiles::Tiles;
 use look::Look;
 use rooms::Space;
-pub(crate) use sketch::{Sight, Sketch};
-pub(crate) use strips::find as find_labels_in;
+pub(crate) use sketch::{Glance, Sight, Sketch};
 pub(crate) use uprights::find as find_uprights;
 
 /// Kinds of junctions.
@@ -245,6 +244,37 @@ pub struct Evidence<'a> {
     pub recall: &'a Recall,
 }
 
+/// What the map is seen from before there are lines.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scene<'a> {
+    pub grid: &'a Grid<'a>,
+    pub directions: &'a Directions,
+    /// At most so many.
+    pub threads: usize,
+    /// What is known from before.
+    pub recall: &'a Recall,
+}
+
+impl<'a> Evidence<'a> {
+    /// What of it needs no lines.
+    fn scene(&self) -> Scene<'a> {
+        let Self { grid, directions, threads, recall, .. } = *self;
+        Scene { grid, directions, threads, recall }
+    }
+
+    /// For each direction's view: it shares its own work out among what threads are left.
+    fn shared_out(&self) -> Self {
+        Self { threads: self.scene().shared_out().threads, ..*self }
+    }
+}
+
+impl Scene<'_> {
+    /// The same.
+    fn shared_out(&self) -> Self {
+        Self { threads: self.threads / self.directions.angles.len().max(1), ..*self }
+    }
+}
+
 /// The map as its lines divide it: what the labels' faces are taken from.
 #[derive(Clone, Copy, Debug)]
 pub struct Division<'a> {
@@ -258,8 +288,8 @@ pub struct Division<'a> {
 
 /// What the labels take from the pixels alone, whatever the stages before them find.
 pub(crate) struct Ground<'scope, 'a> {
-    look: Later<'scope, Look<'a>>,
-    space: Later<'scope, Option<Space>>,
+    pub look: Later<'scope, Look<'a>>,
+    pub space: Later<'scope, Option<Space>>,
 }
 
 impl<'scope, 'a: 'scope> Ground<'scope, 'a> {
@@ -274,15 +304,29 @@ impl<'scope, 'a: 'scope> Ground<'scope, 'a> {
     }
 }
 
+/// The labels that a sketch shows, and for each label how sure it is, 0 to 1.
+pub(crate) fn find_labels_in<'d>(
+    evidence: &Evidence,
+    division: impl Fn() -> Division<'d> + Sync,
+    sketch: Sketch,
+) -> (Vec<Label>, Vec<f64>) {
+    let ask = |labels: &[Label]| confidence::each_by_itself(evidence, labels);
+    let (labels, own) = strips::find(evidence, division, sketch, ask);
+    let confidence = confidence::confidence(&labels, &own);
+    (labels, confidence)
+}
+
 /// Finds the labels by the method that the parameters name; corridors first.
 #[must_use]
 pub fn find_labels(evidence: &Evidence, division: &Division) -> Vec<Label> {
     match evidence.parameters.labels_method {
         Method::Paper => paper::find(evidence, division),
         Method::Strips => side_by_side(evidence.threads, |side| {
-            let ground = Ground::start(side, evidence.grid, evidence.threads, evidence.recall);
+            let Ground { look, space } = Ground::start(side, evidence.grid, evidence.threads, evidence.recall);
             let uprights = find_uprights(&evidence.grid.frame, &evidence.gradients.pixels);
-            find_labels_in(evidence, division, Sketch::beside(evidence, Sight::new(side, evidence, ground, &uprights)))
+            let glance = Later::Made(Glance::new(&evidence.scene(), look.get(), &uprights));
+            let sketch = Sketch::beside(evidence, Sight::new(side, evidence, space, glance));
+            strips::find(evidence, || *division, sketch, |_| Vec::<()>::new()).0
         }),
     }
 }

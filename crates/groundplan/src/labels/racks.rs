@@ -7,6 +7,7 @@ use super::corridors::Strip;
 use super::rows::{Crossings, DEPTH, Row, apart, lines_behind, without};
 use super::runs::close;
 use super::turned::Turned;
+use crate::bands::flat_map_each;
 use std::ops::Range;
 
 /// Least share of a row that is taken.
@@ -24,12 +25,14 @@ pub const WAY_IN: f64 = 0.5;
 const PLACE: (usize, f64) = (3, 0.25);
 
 /// The rows between the corridors and at the outer sides of them, the longest first.
-pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row> {
+pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], threads: usize) -> Vec<Row> {
     let crossings = Crossings::new(views, strips, extents);
-    let mut rows = crossings.between();
+    let between = crossings.between();
     let holds = |view: &Turned, row: &Row| taken(view, row) >= TAKEN || is_outlined(view, row);
-    rows.retain(|row| holds(&views[row.direction], row));
-    for (n, strip) in strips.iter().enumerate() {
+    let held = |n: usize| Some(&between[n]).filter(|row| holds(&views[row.direction], row)).cloned();
+    let mut rows = flat_map_each(between.len(), threads, held);
+    rows.extend(flat_map_each(strips.len(), threads, |n| {
+        let (strip, mut rows) = (&strips[n], Vec::new());
         let view = &views[strip.direction];
         for side in [0, 1] {
             // What of the side no nearer corridor has taken yet.
@@ -57,7 +60,8 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]]) -> Vec<Row
                 rows.extend(found);
             }
         }
-    }
+        rows
+    }));
     apart(views, rows)
 }
 

@@ -1,12 +1,13 @@
 //! The cells of the map seen along one direction: how many of each one's samples are blocked or occupied.
 
-use super::Evidence;
+use super::Scene;
 use super::look::{BLOCKED, LANES, Look, OCCUPIED, between_rays};
 use super::patches::Patches;
 use super::recall::Key;
 use super::summed::Part;
 use super::sums::{Cells, Source, Told};
 use super::turned::Turned;
+use crate::grid::Frame;
 use std::ops::Range;
 
 /// Cells that are kept around what was seen: what stands in one bars those beside it.
@@ -14,9 +15,9 @@ const SPARE: usize = 2;
 
 impl Turned {
     /// The samples that are blocked or occupied in each cell.
-    pub(super) fn look_at(&self, evidence: &Evidence, look: &Look) -> (Cells, Vec<Told>) {
+    pub(super) fn look_at(&self, scene: &Scene, look: &Look) -> (Cells, Vec<Told>) {
         let samples = self.samples as usize;
-        let frame = &evidence.grid.frame;
+        let frame = &scene.grid.frame;
         let sample = self.cell / samples as f64;
         let is_fine = sample > 1.1 * frame.resolution;
         // On the grid, in pixels: the first sample, and the steps to the next one along and across.
@@ -43,7 +44,7 @@ impl Turned {
             }
             self.take(n, first, row);
         };
-        let patches = evidence.recall.patches(evidence.grid, evidence.threads);
+        let patches = scene.recall.patches(scene.grid, scene.threads);
         let key = |rows: Range<usize>| {
             let lanes = [rows.start, rows.end].map(|n| place(0.0, (n * samples) as f64));
             let under = |patches: &Patches| patches.under(lanes, steps[0], self.size[0] * samples);
@@ -51,15 +52,15 @@ impl Turned {
             let [low, high] = [rows.start, rows.end].map(|n| self.start[1] + n as f64 * self.cell);
             self.grounds.key(key, &rows, [low, high])
         };
-        let (seen, recall) = (self.seen(evidence, look), evidence.recall);
-        Cells::new(self.size, self.samples.pow(2) as u16, seen, Source { make, key }, recall, evidence.threads)
+        let (seen, recall) = (self.seen(frame, look), scene.recall);
+        Cells::new(self.size, self.samples.pow(2) as u16, seen, Source { make, key }, recall, scene.threads)
     }
 
     /// The part of the view in which something was seen of the map, and a few cells more.
-    fn seen(&self, evidence: &Evidence, look: &Look) -> Part {
+    fn seen(&self, frame: &Frame, look: &Look) -> Part {
         let mut ends = [[usize::MAX, 0]; 2];
         for &corner in look.seen() {
-            let place = self.place(evidence.grid.frame.to_metres(corner));
+            let place = self.place(frame.to_metres(corner));
             for axis in [0, 1] {
                 let cell = ((place[axis] - self.start[axis]) / self.cell).max(0.0) as usize;
                 let [from, to] = &mut ends[axis];

@@ -26,7 +26,7 @@ use super::turned::Turned;
 use super::uprights::{self, Upright};
 use super::whole;
 use super::widths;
-use super::{Evidence, Ground};
+use super::{Evidence, Ground, Scene};
 use crate::bands::{Later, Side, each, map_each};
 use crate::ends::{both, wider};
 
@@ -35,6 +35,25 @@ pub struct Sketch {
     pub views: Vec<Turned>,
     pub plan: Plan,
     pub free: Free,
+}
+
+/// The map seen along each direction, before there are lines.
+pub struct Glance<'a> {
+    look: Look<'a>,
+    views: Vec<Turned>,
+    on_legs: Vec<Row>,
+}
+
+impl<'a> Glance<'a> {
+    pub fn new(scene: &Scene<'a>, look: Look<'a>, uprights: &[Upright]) -> Self {
+        let on_legs = legs::find(scene, uprights);
+        let views = map_each(scene.directions.angles.len(), scene.threads, |direction| {
+            let mut view = Turned::new(scene, direction, &on_legs);
+            view.see(&scene.shared_out(), &look);
+            view
+        });
+        Self { look, views, on_legs }
+    }
 }
 
 /// What is seen before anything is made of it: all that needs gradients but for racks, which need the specks.
@@ -53,14 +72,15 @@ impl<'s, 'a> Sight<'a, Later<'s, Free>> {
     pub fn new(
         side: Side<'s, '_>,
         evidence: &'s Evidence,
-        Ground { look, space }: Ground<'s, 'a>,
-        uprights: &[Upright],
+        space: Later<'s, Option<Space>>,
+        glance: Later<Glance<'a>>,
     ) -> Self {
         let free = side.start(move || space.get().map(|space| with_bars(evidence, space)));
-        let look = look.get();
-        let count = evidence.directions.angles.len();
-        let on_legs = legs::find(evidence, uprights);
-        let views = map_each(count, evidence.threads, |d| Turned::new(&shared_out(evidence), &look, d, &on_legs));
+        let Glance { look, mut views, on_legs } = glance.get();
+        each(views.iter_mut().collect(), evidence.threads, |view: &mut Turned| {
+            view.line(evidence);
+            view.recur(&evidence.shared_out());
+        });
         Self { look, views, on_legs, free }
     }
 }
@@ -69,16 +89,23 @@ impl<'a> Sight<'a, Free> {
     /// What needs gradients, one after another; nothing is seen between the lines yet.
     pub fn lined(evidence: &Evidence, Ground { look, space }: Ground<'_, 'a>) -> Self {
         let free = space.get().map(|space| with_bars(evidence, space));
-        let count = evidence.directions.angles.len();
-        let on_legs = legs::find(evidence, &uprights::find(&evidence.grid.frame, &evidence.gradients.pixels));
-        let views = map_each(count, evidence.threads, |d| Turned::lined(evidence, d, &on_legs));
+        let scene = evidence.scene();
+        let on_legs = legs::find(&scene, &uprights::find(&evidence.grid.frame, &evidence.gradients.pixels));
+        let views = map_each(evidence.directions.angles.len(), evidence.threads, |direction| {
+            let mut view = Turned::new(&scene, direction, &on_legs);
+            view.line(evidence);
+            view
+        });
         Self { look: look.get(), views, on_legs, free }
     }
 
     /// And what lies between the lines, for which of the gradients the specks are enough.
     pub fn seen(mut self, evidence: &Evidence) -> Self {
         let Self { look, views, .. } = &mut self;
-        each(views.iter_mut().collect(), evidence.threads, |view: &mut Turned| view.see(&shared_out(evidence), look));
+        each(views.iter_mut().collect(), evidence.threads, |view: &mut Turned| {
+            view.see(&evidence.scene().shared_out(), look);
+            view.recur(&evidence.shared_out());
+        });
         self
     }
 }
@@ -87,11 +114,6 @@ impl<'a> Sight<'a, Free> {
 fn with_bars(evidence: &Evidence, space: Space) -> (Space, Vec<Bar>) {
     let bars = space.bars(evidence);
     (space, bars)
-}
-
-/// For each view: it shares its own work out among what threads are left.
-fn shared_out<'a>(evidence: &Evidence<'a>) -> Evidence<'a> {
-    Evidence { threads: evidence.threads / evidence.directions.angles.len().max(1), ..*evidence }
 }
 
 impl Sketch {
@@ -118,7 +140,14 @@ fn planned(evidence: &Evidence, look: &Look, views: Vec<Turned>, on_legs: &[Row]
     if left == on_legs {
         return (views, plan);
     }
-    let views = map_each(views.len(), evidence.threads, |d| Turned::new(&shared_out(evidence), look, d, &left));
+    let views = map_each(views.len(), evidence.threads, |direction| {
+        let scene = evidence.scene().shared_out();
+        let mut view = Turned::new(&scene, direction, &left);
+        view.line(evidence);
+        view.see(&scene, look);
+        view.recur(&evidence.shared_out());
+        view
+    });
     let plan = Plan::of(evidence, look, &views, &left);
     (views, plan)
 }
@@ -230,7 +259,7 @@ impl Plan {
         for &(n, side, place) in &ends {
             extents[n][side] = place;
         }
-        let rows = racks::find(views, &strips, &extents);
+        let rows = racks::find(views, &strips, &extents, threads);
         Self { strips, meetings, ends, extents, rows, racks: Vec::new() }
     }
 }

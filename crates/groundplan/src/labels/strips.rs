@@ -21,13 +21,17 @@ use std::collections::BTreeSet;
 /// So far round a rack there are no doors, metres.
 const RIM: f64 = 0.4;
 
-/// The labels that a sketch shows, with the faces that lie in them.
-pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Label> {
+/// The labels that a sketch shows, with the faces that lie in them, for which it is asked when all else is known; and of each what is asked of some once they are known:
+/// of corridors, what meets them and racks, of regions and doors, and of pillars.
+pub fn find<'d, A: Send>(
+    evidence: &Evidence,
+    division: impl Fn() -> Division<'d> + Sync,
+    sketch: Sketch,
+    ask: impl Fn(&[Label]) -> Vec<A> + Sync,
+) -> (Vec<Label>, Vec<A>) {
     let Sketch { mut views, plan, free } = sketch;
     let Plan { strips, meetings, ends, extents, rows: between, racks: rows } = plan;
 
-    // A face is of one junction at most, and of one corridor.
-    let mut faces = Faces::new(division, |state| state == State::Free);
     let junctions: Vec<Label> = meetings
         .iter()
         .map(|meeting| (meeting.kind, square(&views, &strips, meeting), meeting.at, meeting.corridors.clone()))
@@ -40,7 +44,7 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
         }))
         .map(|(kind, polygon, at, corridors)| Label::Junction {
             kind,
-            faces: faces.take(&polygon),
+            faces: Vec::new(),
             polygon,
             at: at.map(tidy),
             corridors: corridors.into_iter().map(|c| c as u32).collect(),
@@ -55,8 +59,7 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
         length: along[1] - along[0],
     });
     let names = names(&squares, &named.collect::<Vec<_>>());
-    let mut faces = Faces::new(division, |state| state == State::Free);
-    let mut labels: Vec<Label> = strips
+    let mut ways: Vec<Label> = strips
         .iter()
         .zip(&extents)
         .zip(names)
@@ -64,36 +67,55 @@ pub fn find(evidence: &Evidence, division: &Division, sketch: Sketch) -> Vec<Lab
             let view = &views[strip.direction];
             let polygon = rectangle(view, *along, strip.across);
             let axis = along.map(|u| view.to_map([u, strip.middle()]).map(tidy));
-            Label::Corridor { faces: faces.take(&polygon), polygon, axis, width: tidy(strip.width()), name }
+            Label::Corridor { faces: Vec::new(), polygon, axis, width: tidy(strip.width()), name }
         })
         .collect();
     let racked = racked(&views, &strips, &extents, &meetings, [&rows, &between]);
-    labels.extend(junctions);
+    ways.extend(junctions);
     // Of the views their places are asked from here on, and the regions need the room.
     views.iter_mut().for_each(Turned::let_go);
-    let Some((space, bars)) = free else {
-        labels.extend(rack_labels(evidence, division, &views, &rows, &squares));
-        return labels;
+    let corridors = rooms::Corridor::among(&ways);
+    let first = ways.len() + rows.len();
+    let asked = |labels: Vec<Label>| {
+        let answers = ask(&labels);
+        (labels, answers)
     };
-    let first = labels.len() + rows.len();
-    let corridors = rooms::Corridor::among(&labels);
+    let with_racks = || {
+        let division = division();
+        take_faces(&division, &mut ways);
+        ways.extend(rack_labels(evidence, &division, &views, &rows, &squares));
+        asked(ways)
+    };
+    let Some((space, bars)) = free else { return with_racks() };
     let rack = |row: &Row| {
         let [along, across] = [row.along, row.across].map(|ends| wider(ends, pillars::RIM));
         rectangle(&views[row.direction], along, across)
     };
     let grounds: Vec<_> = rows.iter().map(rack).collect();
-    let [racks, rooms, pillars] = side_by_side(evidence.threads, |side| {
-        let (space, grounds, squares) = (&space, &grounds, &squares);
-        let others = side.start(move || {
-            let racks = rack_labels(evidence, division, &views, &rows, squares);
-            [racks, pillar_labels(evidence, &space.raster, grounds, squares)]
-        });
-        let rooms = rooms::find(evidence, division, space, bars, first, &racked, &corridors, squares);
-        let [racks, pillars] = others.get();
-        [racks, rooms, pillars]
+    let [ways, rooms, pillars] = side_by_side(evidence.threads, |side| {
+        let others = side.start(|| [with_racks(), asked(pillar_labels(evidence, &space.raster, &grounds, &squares))]);
+        let rooms = asked(rooms::find(evidence, &division, &space, bars, first, &racked, &corridors, &squares));
+        let [ways, pillars] = others.get();
+        [ways, rooms, pillars]
     });
-    labels.extend(racks.into_iter().chain(rooms).chain(pillars));
-    labels
+    let (mut labels, mut answers) = ways;
+    for (more, their_answers) in [rooms, pillars] {
+        labels.extend(more);
+        answers.extend(their_answers);
+    }
+    (labels, answers)
+}
+
+/// Takes the free faces that lie in corridors and junctions: a face is of one junction at most, and of one corridor.
+fn take_faces(division: &Division, ways: &mut [Label]) {
+    let [mut of_corridors, mut of_junctions] = [0; 2].map(|_| Faces::new(division, |state| state == State::Free));
+    for way in ways {
+        match way {
+            Label::Corridor { faces, polygon, .. } => *faces = of_corridors.take(polygon),
+            Label::Junction { faces, polygon, .. } => *faces = of_junctions.take(polygon),
+            _ => {}
+        }
+    }
 }
 
 /// The racks' own ground, and, with a rim round it, the corridors along racks and those that cross them.

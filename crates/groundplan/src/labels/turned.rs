@@ -1,13 +1,13 @@
 //! The map turned so that one direction lies along the columns: where its places are, and by which keys what is found in
 //! it is kept. What its cells hold is in `sampled.rs`, what lies on its lines in `lined.rs`.
 
-use super::Evidence;
 use super::grounds::Grounds;
 use super::look::{LANES, Look};
 use super::recall::Key;
 use super::rows::Row;
 use super::summed::Summed;
 use super::sums::{Cells, Told, What};
+use super::{Evidence, Scene};
 use crate::bits::Bits;
 use crate::ends::wider;
 use crate::grid::rounded;
@@ -52,17 +52,10 @@ pub struct Turned {
 }
 
 impl Turned {
-    /// The map seen along one direction.
-    pub fn new(evidence: &Evidence, look: &Look, direction: usize, on_legs: &[Row]) -> Self {
-        let mut made = Self::lined(evidence, direction, on_legs);
-        made.see(evidence, look);
-        made
-    }
-
-    /// What lies on a direction's lines, and nothing between them yet.
-    pub fn lined(evidence: &Evidence, direction: usize, on_legs: &[Row]) -> Self {
-        let frame = &evidence.grid.frame;
-        let angle = evidence.directions.angles[direction];
+    /// Along one direction; nothing is seen yet.
+    pub fn new(scene: &Scene, direction: usize, on_legs: &[Row]) -> Self {
+        let frame = &scene.grid.frame;
+        let angle = scene.directions.angles[direction];
         let (cos, sin) = (libm::cos(angle), libm::sin(angle));
         let turn = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
         let (w, h) = (frame.width as f64, frame.height as f64);
@@ -91,15 +84,18 @@ impl Turned {
             grounds: Grounds::default(),
             keys: (Key::default(), Arc::default()),
         };
-        made.grounds = Grounds::new(evidence, &made, on_legs);
-        made.cover_lines(evidence);
+        made.grounds = Grounds::new(scene.directions, &made, on_legs);
         made
     }
 
-    /// And all that lies between them; of the gradients the specks are asked.
-    pub fn see(&mut self, evidence: &Evidence, look: &Look) {
-        let (cells, rows) = self.look_at(evidence, look);
+    /// Sees all of the map, for which no lines are needed.
+    pub fn see(&mut self, scene: &Scene, look: &Look) {
+        let (cells, rows) = self.look_at(scene, look);
         (self.cells, self.rows) = (cells, Arc::new(rows));
+    }
+
+    /// Finds what recurs along the lines of what is seen; of the gradients the specks are asked.
+    pub fn recur(&mut self, evidence: &Evidence) {
         self.pitch = super::pitch::find(evidence, self);
         if evidence.recall.keeps() {
             self.keys = self.find_keys();

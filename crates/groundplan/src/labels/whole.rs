@@ -8,6 +8,7 @@ use super::corridors::Strip;
 use super::racks;
 use super::rows::{Crossings, Row, SHORTEST, heaviest};
 use super::turned::Turned;
+use crate::bands::flat_map_each;
 
 /// So many times its length a row counts whose two faces are seen.
 const SEEN_BOTH: f64 = 1.3;
@@ -55,7 +56,7 @@ pub fn find(
         let row = trimmed(view, row, crossings.before_backs(row, 2.0 * RIM))?;
         Some(if row.between.is_some() { followed(view, &crossings, &row) } else { row })
     };
-    let found: Vec<Row> = known.iter().filter_map(whole).collect();
+    let found = flat_map_each(known.len(), threads, |n| whole(&known[n]));
     let mut blocks = blocks::find(views, &found, standing);
     let met = blocks::overlapping(views, &blocks, on_legs);
     let mut met = met.into_iter();

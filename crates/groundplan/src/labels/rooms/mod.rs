@@ -88,9 +88,9 @@ impl Space {
 /// Regions, then the doors between them; `first` is the id of the first of these labels. What runs across one of the
 /// corridors is no door.
 #[expect(clippy::too_many_arguments, reason = "what the labels before are found from, and what they are")]
-pub fn find(
+pub fn find<'d>(
     evidence: &Evidence,
-    division: &Division,
+    division: impl FnOnce() -> Division<'d>,
     space: &Space,
     mut bars: Vec<Bar>,
     first: usize,
@@ -118,8 +118,8 @@ pub fn find(
     }
     let doorways = doorways::find(raster, &numbers, cells.openings);
     let fine = Fine::new(evidence.grid, raster, numbers, regions.len());
-    let faces = faces(evidence, division, &fine, regions.len());
     let mut outlines = outlines::find(&fine, regions.len(), evidence.recall, evidence.threads);
+    let faces = faces(evidence, &division(), &fine, regions.len());
     let square = evidence.grid.frame.resolution.powi(2);
     let placed = |region: &Region| {
         let area = fine.areas[region.number as usize] as f64 * square;
