@@ -108,12 +108,17 @@ pub fn find<'d, A: Send>(
 
 /// Takes the free faces that lie in corridors and junctions: a face is of one junction at most, and of one corridor.
 fn take_faces(division: &Division, ways: &mut [Label]) {
-    let [mut of_corridors, mut of_junctions] = [0; 2].map(|_| Faces::new(division, |state| state == State::Free));
+    let mut left = Faces::new(division, |state| state == State::Free);
+    let all = left.left.clone();
+    for way in &mut *ways {
+        if let Label::Corridor { faces, polygon, .. } = way {
+            *faces = left.take(polygon);
+        }
+    }
+    left.left = all;
     for way in ways {
-        match way {
-            Label::Corridor { faces, polygon, .. } => *faces = of_corridors.take(polygon),
-            Label::Junction { faces, polygon, .. } => *faces = of_junctions.take(polygon),
-            _ => {}
+        if let Label::Junction { faces, polygon, .. } = way {
+            *faces = left.take(polygon);
         }
     }
 }
@@ -185,6 +190,9 @@ fn rack_labels(
     rows: &[Row],
     squares: &Squares,
 ) -> Vec<Label> {
+    if rows.is_empty() {
+        return Vec::new();
+    }
     let mut faces = Faces::new(division, |_| true);
     let middle = |row: &Row| {
         let place = [row.along, row.across].map(|ends| f64::midpoint(ends[0], ends[1]));
