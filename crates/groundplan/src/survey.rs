@@ -105,7 +105,7 @@ pub fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, threads: u
     if strips && !given.keep && sparing::is_large(frame) {
         return survey_sparingly(grid, parameters, given, threads);
     }
-    // What the labels need of the pixels alone, and then of the directions and of the lines, is made beside the other stages.
+    // What the labels need of the pixels alone, then of the directions, and then of the lines, is made beside other stages.
     let recall = Recall::new(given.keep.then(|| given.memory.take().unwrap_or_default()));
     let mut survey = side_by_side(threads, |side| {
         let ground = strips.then(|| Ground::start(side, grid, threads, &recall));
@@ -129,28 +129,7 @@ pub fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, threads: u
                 let divided = side.start(|| Divided::new(&evidence, given.sums));
                 let sketch =
                     seen.map(|(space, glance)| Sketch::beside(&evidence, Sight::new(side, &evidence, space, glance)));
-                let divided = Awaited::new(divided);
-                let walls = || find_walls(&divided.get().subdivision, &divided.get().occupancy, parameters);
-                let with = |adjacency| {
-                    let Divided { subdivision, occupancy } = divided.get();
-                    Division { subdivision, occupancy, adjacency }
-                };
-                let (walls, (labels, confidence)) = if let Some(sketch) = sketch {
-                    // Labels by strips ask nothing of walls, and of faces last.
-                    let no_links = Adjacency::default();
-                    side_by_side(threads, |side| {
-                        let walls = side.start(walls);
-                        let labels = find_labels_in(&evidence, || with(&no_links), sketch);
-                        (walls.get(), labels)
-                    })
-                } else {
-                    let walls = walls();
-                    let adjacency = find_adjacency(&divided.get().subdivision.edge_faces, &walls.cogent);
-                    let labels = find_labels(&evidence, &with(&adjacency));
-                    let confidence = find_confidence(&evidence, &labels);
-                    (walls, (labels, confidence))
-                };
-                (divided.into_made(), walls, labels, confidence)
+                labelled(&evidence, Awaited::new(divided), sketch)
             });
             (radiograms, lines, divided, walls, labels, confidence)
         });
@@ -240,6 +219,35 @@ impl Divided {
         });
         Self { subdivision: Subdivision::new(frame, arrangement, threads), occupancy }
     }
+}
+
+/// The labels, from a sketch or by the paper's method, and the walls of what is being divided. Labels by strips ask nothing
+/// of walls, and of faces last.
+fn labelled(
+    evidence: &Evidence,
+    divided: Awaited<Divided>,
+    sketch: Option<Sketch>,
+) -> (Divided, Walls, Vec<Label>, Vec<f64>) {
+    let walls = || find_walls(&divided.get().subdivision, &divided.get().occupancy, evidence.parameters);
+    let division = |adjacency| {
+        let Divided { subdivision, occupancy } = divided.get();
+        Division { subdivision, occupancy, adjacency }
+    };
+    let (walls, labels, confidence) = if let Some(sketch) = sketch {
+        let no_links = Adjacency::default();
+        side_by_side(evidence.threads, |side| {
+            let walls = side.start(walls);
+            let (labels, confidence) = find_labels_in(evidence, || division(&no_links), sketch);
+            (walls.get(), labels, confidence)
+        })
+    } else {
+        let walls = walls();
+        let adjacency = find_adjacency(&divided.get().subdivision.edge_faces, &walls.cogent);
+        let labels = find_labels(evidence, &division(&adjacency));
+        let confidence = find_confidence(evidence, &labels);
+        (walls, labels, confidence)
+    };
+    (divided.into_made(), walls, labels, confidence)
 }
 
 /// The evidence does not decide a label that is no surer than this.

@@ -128,11 +128,7 @@ impl<'a> Family<'a> {
                     || sides.iter().fold(self.key(across), |key, &side| key.key(self.sides[side].key)),
                     || {
                         let own = self.seen_in(near.view());
-                        let pieces = |open: Range<usize>| {
-                            let columns = own.columns(sides, open.clone());
-                            own.pieces(&columns, open.start, across)
-                        };
-                        own.open(across).into_iter().flat_map(pieces).collect()
+                        own.open(across).into_iter().flat_map(|open| own.pieces_in(sides, open)).collect()
                     },
                 );
                 found.extend(pieces.iter().map(|(strip, whole)| Candidate::new(view, sides, strip, *whole)));
@@ -168,9 +164,8 @@ impl<'a> Family<'a> {
                 for open in open.into_iter().filter(may_be) {
                     let key = || sides.iter().fold(*key, |key, &side| self.key_in(key, side, &mouths[side], &open));
                     let strips = recall.strips.or_find(key, || {
-                        let own = self.seen_in(near.view());
-                        let strips = own.strips(&own.columns(sides, open.clone()), open.start, across).into_iter();
-                        strips.filter(led_to).map(|strip| (strip, true)).collect()
+                        let pieces = self.seen_in(near.view()).pieces_in(sides, open.clone());
+                        pieces.into_iter().filter(|(strip, is_corridor)| *is_corridor && led_to(strip)).collect()
                     });
                     found.extend(strips.iter().map(|(strip, whole)| Candidate::new(view, sides, strip, *whole)));
                 }

@@ -6,7 +6,7 @@ use super::corridors::Strip;
 use super::family::Family;
 use super::runs::{best_pieces, runs};
 use super::shares::{BARRED, IMPASSABLE};
-use crate::bits::WORD;
+use crate::bits::{Bits, WORD, lowest};
 use crate::ends::sorted;
 use std::ops::Range;
 
@@ -32,6 +32,10 @@ const FACED_TWICE: f64 = 0.4;
 const FACED_ONCE: f64 = 0.85;
 /// Where no bays recur it is none when so much of its length has no more than posts on a side.
 const BARE: f64 = 0.7;
+/// No less than a walled column says for a corridor, and no more than one that is not says against it: in thousandths, and
+/// apart from what floats round.
+const MOST_FOR: i64 = 1000;
+const LEAST_AGAINST: i64 = 149;
 /// A strip from so many to so many pitches wide may be a row of bays.
 pub const BAY_WIDTH: (f64, f64) = (0.65, 1.17);
 /// It is none when walls run along both its sides, with hardly a gap.
@@ -53,24 +57,68 @@ impl Family<'_> {
         blocked.open(0..view.size[0], least.max(1), closed, &[])
     }
 
+    /// The two lines, and those between them that part a strip.
+    fn lines(&self, [low, high]: [usize; 2]) -> ([&Side; 2], Vec<&Side>) {
+        let [from, to] = [low, high].map(|n| self.view.offsets[n]);
+        let inner = INNER.min(0.25 * (to - from));
+        let parts = (low + 1..high)
+            .filter(|&n| self.view.offsets[n] - from > inner && to - self.view.offsets[n] > inner)
+            .map(|n| &self.sides[n]);
+        ([low, high].map(|n| &self.sides[n]), parts.collect())
+    }
+
+    /// At which of some columns the ground beyond each side is not free.
+    fn beyond(&self, [low, high]: [f64; 2], range: &Range<usize>) -> [Bits; 2] {
+        let beyond = [[low - BESIDE.1, low - BESIDE.0], [high + BESIDE.0, high + BESIDE.1]];
+        beyond.map(|[low, high]| self.view.blocked_where(range.clone(), low, high, |share| share > BEYOND))
+    }
+
+    /// The pieces among some columns between two lines, if there may be any: mostly walls are too few, which is told from
+    /// these alone.
+    pub fn pieces_in(&self, sides: [usize; 2], range: Range<usize>) -> Vec<(Strip, bool)> {
+        let across = sides.map(|n| self.view.offsets[n]);
+        let beyond = self.beyond(across, &range);
+        let ([low, high], parts) = self.lines(sides);
+        let mut walled = Bits::new(range.len());
+        for from in range.clone().step_by(WORD) {
+            let place = from - range.start;
+            let walls =
+                (low.walls.word(from) | beyond[0].word(place)) & (high.walls.word(from) | beyond[1].word(place));
+            let parted = parts.iter().fold(0, |parted, part| parted | part.faces.word(from));
+            walled.add(place, walls & !parted & lowest(range.end - from));
+        }
+        // No column says more for a corridor than that it is walled, and none that is not says less against it than OPEN: so
+        // each piece lies in one of these.
+        let mut scores = Vec::new();
+        let mut ends = Vec::new();
+        for run in walled.runs(0..range.len(), true) {
+            let before = ends.last().map_or(0, |last: &Range<usize>| last.end);
+            scores.extend([-LEAST_AGAINST * (run.start - before) as i64, MOST_FOR * run.len() as i64]);
+            ends.extend([before..run.start, run]);
+        }
+        let is_long = |&(from, to): &(usize, usize)| self.is_long(ends[to - 1].end - ends[from].start, across);
+        if !best_pieces(&scores).iter().any(is_long) {
+            return Vec::new();
+        }
+        self.pieces(&self.columns(sides, range.clone()), range.start, across)
+    }
+
+    /// So many columns are long enough for a corridor between two places across.
+    fn is_long(&self, columns: usize, across: [f64; 2]) -> bool {
+        columns as f64 * self.view.cell >= self.parameters.labels_min_aspect * (across[1] - across[0])
+    }
+
     /// What some columns between two lines hold.
-    pub fn columns(&self, [low, high]: [usize; 2], range: Range<usize>) -> Vec<Column> {
-        let across = [self.view.offsets[low], self.view.offsets[high]];
-        let width = across[1] - across[0];
-        let inner = INNER.min(0.25 * width);
-        let parts: Vec<&Side> = (low + 1..high)
-            .filter(|&n| self.view.offsets[n] - across[0] > inner && across[1] - self.view.offsets[n] > inner)
-            .map(|n| &self.sides[n])
-            .collect();
-        let sides = [&self.sides[low], &self.sides[high]];
-        let margin = MARGIN.min(0.2 * width);
-        let beyond = [[across[0] - BESIDE.1, across[0] - BESIDE.0], [across[1] + BESIDE.0, across[1] + BESIDE.1]];
+    pub fn columns(&self, lines: [usize; 2], range: Range<usize>) -> Vec<Column> {
+        let across = lines.map(|n| self.view.offsets[n]);
+        let (sides, parts) = self.lines(lines);
+        let margin = MARGIN.min(0.2 * (across[1] - across[0]));
         let view = self.view;
         let within = [across[0] + margin, across[1] - margin];
         let first = range.start;
         let blocked = view.some_blocked(range.clone(), within[0], within[1]);
         let barred = view.barred_where(range.clone(), within[0], within[1], |barred| barred > BARRED);
-        let beyond = beyond.map(|[low, high]| view.blocked_where(range.clone(), low, high, |share| share > BEYOND));
+        let beyond = self.beyond(across, &range);
         let barriers = barriers::among(view, across, range.clone());
         let mut columns = Vec::with_capacity(range.len());
         for (from, blocked) in range.step_by(WORD).zip(blocked.chunks(WORD)) {
@@ -123,8 +171,7 @@ impl Family<'_> {
             unseen: [false; 2],
             held: self.held(&columns[from..to]).map(|column| view.along(first + from + column)),
         };
-        let long =
-            |(from, to): &(usize, usize)| (to - from) as f64 * view.cell >= self.parameters.labels_min_aspect * width;
+        let long = |(from, to): &(usize, usize)| self.is_long(to - from, across);
         let judged = |(from, to)| {
             let edged = || self.edged(first + from..first + to, across);
             (strip((from, to)), self.is_corridor(&columns[from..to], width, edged))

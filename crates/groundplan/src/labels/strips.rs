@@ -21,8 +21,9 @@ use std::collections::BTreeSet;
 /// So far round a rack there are no doors, metres.
 const RIM: f64 = 0.4;
 
-/// The labels that a sketch shows, with the faces that lie in them, for which it is asked when all else is known; and of each what is asked of some once they are known:
-/// of corridors, what meets them and racks, of regions and doors, and of pillars.
+/// The labels that a sketch shows, with the faces that lie in them: the division is waited for when all else is known of
+/// them. And what is asked of some as soon as they are known: of corridors, junctions and racks together, of regions and
+/// doors, and of pillars.
 pub fn find<'d, A: Send>(
     evidence: &Evidence,
     division: impl Fn() -> Division<'d> + Sync,
