@@ -18,6 +18,8 @@ use std::ops::Range;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
 const IN_LINE: (f64, f64) = (0.7, 0.5);
+/// Directions are square to each other but for an angle of this sine.
+const SQUARE: f64 = 0.05;
 
 /// The ways through the rows between corridors, as strips of the direction that crosses them.
 pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], rows: &[Row]) -> Vec<Strip> {
@@ -134,6 +136,11 @@ pub fn leading_across([view, other]: [&Turned; 2], placed: &[Beside], row: &Row,
 pub fn crossing(views: &[Turned], direction: usize) -> Option<&Turned> {
     let sine = |view: &&Turned| libm::sin(view.angle - views[direction].angle).abs();
     views.iter().max_by(|a, b| sine(a).total_cmp(&sine(b))).filter(|view| sine(view) > 0.5)
+}
+
+/// The same if it is square to it.
+pub fn square_to(views: &[Turned], direction: usize) -> Option<&Turned> {
+    crossing(views, direction).filter(|view| libm::cos(view.angle - views[direction].angle).abs() <= SQUARE)
 }
 
 /// Gates that follow one another through neighbouring rows are one way.

@@ -2,18 +2,17 @@
 //! between them and the wall has no line for its other side, or a wrong one, and yet the aisles between the rows lead there.
 
 use super::Evidence;
-use super::beside::{Beside, placed};
 use super::corridors::{Strip, UNTOLD};
 use super::family;
-use super::gates::crossing;
+use super::gates::square_to;
+use super::known::{Known, Led};
 use super::look::Look;
-use super::ragged;
 use super::rows::Row;
 use super::sections::Columns;
 use super::shut;
 use super::turned::Turned;
 use crate::bands::flat_map_each;
-use crate::ends::{around, overlap, sorted};
+use crate::ends::sorted;
 use crate::grid::Frame;
 use crate::parameters::Parameters;
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,8 +23,6 @@ const SHORT: f64 = 6.0;
 const IN_LINE: f64 = 0.5;
 /// So many rows side by side end before it, at least.
 const ROWS: usize = 2;
-/// The way is square to them but for an angle of this sine.
-const SQUARE: f64 = 0.05;
 /// What stands so near to its sides, in widths, does not bar the way.
 const SIDES: f64 = 0.2;
 /// What is no more than this from the wall is the wall, metres.
@@ -43,10 +40,7 @@ pub fn with(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let (parameters, frame) = (evidence.parameters, &evidence.grid.frame);
     let mut known = Known::new(views, strips);
     for view in views {
-        let Some(other) = crossing(views, view.direction) else { continue };
-        if libm::cos(other.angle - view.angle).abs() > SQUARE {
-            continue;
-        }
+        let Some(other) = square_to(views, view.direction) else { continue };
         for chain in chains(strips, rows, view.direction) {
             for side in [0, 1] {
                 let heads = Heads { look, frame, view, other, strips, side, parameters, threads: evidence.threads };
@@ -86,12 +80,6 @@ fn chains(strips: &[Strip], rows: &[Row], direction: usize) -> Vec<Vec<Between>>
     chains
 }
 
-/// A way, and from the middle of the first aisle that leads there to that of the last, along.
-struct Head {
-    way: Strip,
-    middles: [f64; 2],
-}
-
 /// One side of the aisles of a direction.
 struct Heads<'a> {
     look: &'a Look<'a>,
@@ -106,7 +94,7 @@ struct Heads<'a> {
 
 impl Heads<'_> {
     /// The ways between a wall and the rows of a chain that end before it.
-    fn ways(&self, chain: &[Between]) -> Vec<Head> {
+    fn ways(&self, chain: &[Between]) -> Vec<Led> {
         let least = self.parameters.labels_min_width;
         let before = |row: &Between| {
             let [one, two] = row.aisles.map(|n| self.wall(n));
@@ -158,7 +146,7 @@ impl Heads<'_> {
     }
 
     /// The way past some rows, if it is free.
-    fn way(&self, rows: &[Between], wall: f64, width: f64) -> Option<Head> {
+    fn way(&self, rows: &[Between], wall: f64, width: f64) -> Option<Led> {
         let aisles = rows.iter().flat_map(|row| row.aisles).map(|n| self.strips[n].width()).fold(0.0, f64::max);
         if !(family::LED_TO * aisles..=self.parameters.labels_max_width).contains(&width) {
             return None;
@@ -184,43 +172,6 @@ impl Heads<'_> {
             held: UNTOLD,
         };
         let middles = [first, last].map(|aisle| self.other.place(self.view.to_map([wall, aisle.middle()]))[0]);
-        is_clear.then_some(Head { way, middles: sorted(middles) })
-    }
-}
-
-/// The ways that are known, to which more are put in place of what was known of them.
-struct Known {
-    /// Without those that are part of another.
-    ways: Vec<Option<Strip>>,
-    placed: Vec<Beside>,
-    is_more: bool,
-}
-
-impl Known {
-    fn new(views: &[Turned], strips: &[Strip]) -> Self {
-        let placed = placed(views, strips.iter().map(Strip::place));
-        Self { ways: strips.iter().cloned().map(Some).collect(), placed, is_more: false }
-    }
-
-    /// With one more, unless it is known to lead as far, from middle to middle.
-    fn add(&mut self, Head { mut way, middles }: Head) {
-        let near = self.placed[way.direction].touching(way.along, way.across).into_iter();
-        let is_part = |n: &usize| self.ways[*n].as_ref().is_some_and(|known| ragged::is_beside(known, &way));
-        let parts: Vec<usize> = near.filter(is_part).collect();
-        let leads = parts.iter().flat_map(|&n| &self.ways[n]).map(|part| overlap(part.along, middles));
-        if leads.fold(0.0, f64::max) >= middles[1] - middles[0] - IN_LINE {
-            return;
-        }
-        for part in parts.into_iter().filter_map(|n| self.ways[n].take()) {
-            way.along = around(way.along.into_iter().chain(part.along));
-        }
-        self.placed[way.direction].add(self.ways.len(), way.along, way.across);
-        self.ways.push(Some(way));
-        self.is_more = true;
-    }
-
-    /// All, if there are more than there were.
-    fn with_more(self) -> Option<Vec<Strip>> {
-        self.is_more.then(|| self.ways.into_iter().flatten().collect())
+        is_clear.then_some(Led { way, middles: sorted(middles) })
     }
 }

@@ -5,6 +5,7 @@ use super::beside::placed;
 use super::blocks::Standing;
 use super::carried;
 use super::connected;
+use super::cornered;
 use super::corridors::{self, Strip};
 use super::crossed;
 use super::faced;
@@ -204,6 +205,9 @@ impl Plan {
             plan = Self::new(views, plan.strips, threads);
         }
         if let Some(more) = heads::with(evidence, look, views, &plan.strips, &plan.rows) {
+            plan = Self::new(views, more, threads);
+        }
+        if let Some(more) = cornered::with(views, &plan.strips, evidence.parameters) {
             plan = Self::new(views, more, threads);
         }
         plan.racks = plan.find_racks(views, on_legs, &standing, threads);

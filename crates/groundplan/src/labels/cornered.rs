@@ -1,0 +1,168 @@
+//! Ways behind the last rows of a place, of which little was seen: where ways between the rows lead on past them, the rows'
+//! corners show where a way along their backs begins, and what stands across from these where it ends.
+
+use super::barriers;
+use super::corridors::{Strip, UNTOLD};
+use super::family;
+use super::gates::square_to;
+use super::known::{Known, Led};
+use super::rows::{DEPTH, SAME};
+use super::runs::runs;
+use super::turned::Turned;
+use crate::ends::{overlap, sorted, wider};
+use crate::parameters::Parameters;
+use std::collections::BTreeMap;
+
+/// What stands so near to a way's side, metres, stands on it.
+const SIDE: f64 = 0.25;
+/// What leads there is free but for this share within this share of its width, and nothing but this share stands in the way.
+const CLUTTER: f64 = 0.2;
+const INNER: f64 = 0.6;
+const TAKEN: f64 = 0.05;
+/// So much of it was not seen between two ways that lead to it: of what was seen more is told by its sides. And no more.
+const UNSEEN: [f64; 2] = [0.1, 0.85];
+
+/// The ways with those behind the last rows that are not known; none where there are no such.
+pub fn with(views: &[Turned], strips: &[Strip], parameters: &Parameters) -> Option<Vec<Strip>> {
+    let mut known = Known::new(views, strips);
+    for view in views {
+        let Some(other) = square_to(views, view.direction) else { continue };
+        for side in [0, 1] {
+            let behind = Behind { view, other, strips, side, parameters };
+            behind.ways().into_iter().for_each(|way| known.add(way));
+        }
+    }
+    known.with_more()
+}
+
+/// The corner of a row beside a way that leads past it.
+#[derive(Clone)]
+struct Corner {
+    way: usize,
+    /// On which side of the way, along the rows.
+    side: usize,
+    /// From the corner to what stands across from it, across the rows.
+    gap: [f64; 2],
+}
+
+impl Corner {
+    fn is_in_line(&self, other: &Self) -> bool {
+        (0..2).all(|n| (self.gap[n] - other.gap[n]).abs() <= SAME)
+    }
+}
+
+/// One side of the aisles of a direction, and the ways that cross them.
+struct Behind<'a> {
+    view: &'a Turned,
+    other: &'a Turned,
+    strips: &'a [Strip],
+    side: usize,
+    parameters: &'a Parameters,
+}
+
+impl Behind<'_> {
+    fn ways(&self) -> Vec<Led> {
+        let leading = (0..self.strips.len()).filter(|&n| self.strips[n].direction == self.other.direction);
+        let mut corners: Vec<Corner> = leading.flat_map(|n| self.corners(n)).collect();
+        let mut found = Vec::new();
+        while let Some(best) =
+            corners.iter().rev().max_by_key(|one| corners.iter().filter(|two| one.is_in_line(two)).count())
+        {
+            let (in_line, left) = corners.iter().cloned().partition(|corner| corner.is_in_line(best));
+            found.extend(self.along(best.gap, in_line));
+            corners = left;
+        }
+        found
+    }
+
+    /// The corners on both sides of a way behind the last aisle that it crosses.
+    fn corners(&self, n: usize) -> Vec<Corner> {
+        let way = &self.strips[n];
+        let Some(last) = self.last_crossed(way) else { return Vec::new() };
+        let reach = DEPTH.1 + self.parameters.labels_max_width;
+        let place = |far: f64| {
+            let outer = last.across[self.side];
+            self.view.crossing(self.other, if self.side == 0 { outer - far } else { outer + far }, way.middle())
+        };
+        let columns = |ends: [f64; 2]| {
+            let [from, to] = sorted(ends.map(|far| place(far)[0]));
+            self.other.column(from)..self.other.column(to) + 1
+        };
+        let widest = self.parameters.labels_max_width.min(last.width() / family::LED_TO);
+        let least = self.parameters.labels_min_width.max(last.width() * family::LED_TO);
+        let is_outwards = place(reach)[0] > place(0.0)[0];
+        let corner = |k: usize| {
+            let stands = self.other.some_occupied(columns([0.0, reach]), way.across[k] - SIDE, way.across[k] + SIDE);
+            let mut stands: Vec<bool> = stands.into_iter().map(|share| share > 0.0).collect();
+            if !is_outwards {
+                stands.reverse();
+            }
+            let far = |column: usize| column as f64 * self.other.cell;
+            let gaps = runs(&stands, false).into_iter().filter(|&(_, to)| to < stands.len());
+            let mut gaps = gaps.map(|(from, to)| [far(from), far(to)]);
+            let gap = gaps.find(|[from, to]| to - from >= least)?;
+            let inner = wider(way.across, (INNER - 1.0) / 2.0 * way.width());
+            let is_corner = (DEPTH.0..=DEPTH.1).contains(&gap[0])
+                && gap[1] - gap[0] <= widest
+                && self.other.mean_blocked(columns([0.0, gap[1]]), inner[0], inner[1]) <= CLUTTER;
+            let at = |far: f64| self.view.place(self.other.to_map([place(far)[0], way.across[k]]));
+            let side = usize::from(at(0.0)[0] > place(0.0)[1]);
+            is_corner.then(|| Corner { way: n, side, gap: sorted(gap.map(|far| at(far)[1])) })
+        };
+        (0..2).filter_map(corner).collect()
+    }
+
+    /// The outermost aisle that a way crosses.
+    fn last_crossed(&self, way: &Strip) -> Option<&Strip> {
+        let is_crossed = |aisle: &&Strip| {
+            let [s, u] = self.view.crossing(self.other, aisle.middle(), way.middle());
+            aisle.direction == self.view.direction
+                && (way.along[0]..=way.along[1]).contains(&s)
+                && overlap(aisle.along, wider([u; 2], way.width() / 2.0)) >= 0.0
+        };
+        let outwards = |aisle: &Strip| if self.side == 0 { -aisle.middle() } else { aisle.middle() };
+        self.strips.iter().filter(is_crossed).max_by(|a, b| outwards(a).total_cmp(&outwards(b)))
+    }
+
+    /// The ways along a gap behind rows that show both their corners, one beside another.
+    fn along(&self, gap: [f64; 2], corners: Vec<Corner>) -> Vec<Led> {
+        let middle = f64::midpoint(gap[0], gap[1]);
+        let ends = |n: usize| sorted(self.strips[n].across.map(|t| self.view.crossing(self.other, middle, t)[1]));
+        let mut sides: BTreeMap<usize, [bool; 2]> = BTreeMap::new();
+        for corner in corners {
+            sides.entry(corner.way).or_default()[corner.side] = true;
+        }
+        let mut leading: Vec<([f64; 2], [bool; 2])> = sides.into_iter().map(|(n, sides)| (ends(n), sides)).collect();
+        leading.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
+        let goes_on = |one: &([f64; 2], [bool; 2]), two: &([f64; 2], [bool; 2])| {
+            one.1[1] && two.1[0] && one.0[1] < two.0[0] && self.is_way([one.0[1], two.0[0]], gap)
+        };
+        let runs = leading.chunk_by(goes_on).filter(|run| run.len() > 1);
+        runs.map(|run| {
+            let [first, last] = [run[0].0, run[run.len() - 1].0];
+            let way = Strip {
+                direction: self.view.direction,
+                along: [first[0], last[1]],
+                across: gap,
+                score: last[1] - first[0],
+                bays: false,
+                is_ragged: true,
+                unseen: [false; 2],
+                held: UNTOLD,
+            };
+            Led { way, middles: [first, last].map(|ends| f64::midpoint(ends[0], ends[1])) }
+        })
+        .collect()
+    }
+
+    /// True when nothing stands between two ways that lead to what was seen in part.
+    fn is_way(&self, [from, to]: [f64; 2], gap: [f64; 2]) -> bool {
+        let columns = self.view.column(from)..self.view.column(to) + 1;
+        let [low, high] = wider(gap, -SIDE);
+        let taken = self.view.some_occupied(columns.clone(), low, high);
+        let unseen = self.view.mean_blocked(columns.clone(), low, high);
+        taken.iter().sum::<f64>() <= TAKEN * taken.len() as f64
+            && (UNSEEN[0]..=UNSEEN[1]).contains(&unseen)
+            && !barriers::among(self.view, gap, columns).any()
+    }
+}

@@ -1,0 +1,53 @@
+//! Ways that are known, and such as others lead to: these are put in place of what is known of them.
+
+use super::beside::{Beside, placed};
+use super::corridors::Strip;
+use super::ragged;
+use super::turned::Turned;
+use crate::ends::{around, overlap};
+
+/// A way that is known to lead nearly as far, but for this, metres, is no less.
+const SHORT: f64 = 0.5;
+
+/// A way, and from the middle of the first one that leads there to that of the last, along.
+pub struct Led {
+    pub way: Strip,
+    pub middles: [f64; 2],
+}
+
+/// The ways that are known, to which more are put in place of what was known of them.
+pub struct Known {
+    /// Without those that are part of another.
+    ways: Vec<Option<Strip>>,
+    placed: Vec<Beside>,
+    is_more: bool,
+}
+
+impl Known {
+    pub fn new(views: &[Turned], strips: &[Strip]) -> Self {
+        let placed = placed(views, strips.iter().map(Strip::place));
+        Self { ways: strips.iter().cloned().map(Some).collect(), placed, is_more: false }
+    }
+
+    /// With one more, unless it is known to lead as far, from middle to middle.
+    pub fn add(&mut self, Led { mut way, middles }: Led) {
+        let near = self.placed[way.direction].touching(way.along, way.across).into_iter();
+        let is_part = |n: &usize| self.ways[*n].as_ref().is_some_and(|known| ragged::is_beside(known, &way));
+        let parts: Vec<usize> = near.filter(is_part).collect();
+        let leads = parts.iter().flat_map(|&n| &self.ways[n]).map(|part| overlap(part.along, middles));
+        if leads.fold(0.0, f64::max) >= middles[1] - middles[0] - SHORT {
+            return;
+        }
+        for part in parts.into_iter().filter_map(|n| self.ways[n].take()) {
+            way.along = around(way.along.into_iter().chain(part.along));
+        }
+        self.placed[way.direction].add(self.ways.len(), way.along, way.across);
+        self.ways.push(Some(way));
+        self.is_more = true;
+    }
+
+    /// All, if there are more than there were.
+    pub fn with_more(self) -> Option<Vec<Strip>> {
+        self.is_more.then(|| self.ways.into_iter().flatten().collect())
+    }
+}
