@@ -239,3 +239,20 @@ def test_a_way_through_rows_leads_on_through_the_next_where_the_bays_beside_it_a
     survey = groundplan.survey(picture, resolution=RESOLUTION)
     expected = ["L"] * 4 + ["T"] * 2 * rows + ["X"] * (rows - 1)
     assert sorted(junction["type"] for junction in survey.of_kind("junction")) == expected
+
+
+@pytest.mark.parametrize("empty", [(1,), (1, 2), (0, 3)])
+@pytest.mark.parametrize(("bay", "deep"), [(60, 24), (70, 48)])
+def test_an_empty_last_bay_beside_a_way_is_none(empty: tuple[int, ...], bay: int, deep: int) -> None:
+    # A way of 3.2 m through four rows, and 0.1 m of guard between it and what is as wide in one row or two.
+    left, way, right = 20 + 80, 64, 420
+    middle = left + 240
+    picture = hall(160 + 240 + way + right, 4 * (60 + deep) + 60)
+    for n in range(4):
+        row = picture[80 + n * (60 + deep) :][:deep]
+        row[:, left:middle] = 0
+        row[:, middle + way : middle + way + right] = 0
+        if n in empty:
+            row[:, middle + way + 2 : middle + way + bay] = 254
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 8 + ["X"] * 3

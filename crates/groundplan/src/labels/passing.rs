@@ -39,7 +39,8 @@ impl<'a> Place<'a> {
 /// What a strip passes through of the rows of a place.
 #[derive(Clone, Default)]
 pub struct Passing {
-    pub rows: usize,
+    /// Which of the rows.
+    pub rows: Vec<usize>,
     /// How long it is without what leads through them, from aisle to aisle, metres.
     pub rest: f64,
     /// Those beside them that it would lead through, were it longer.
@@ -48,6 +49,13 @@ pub struct Passing {
     pub is_led_on: bool,
     /// One of them goes on beyond both its sides.
     pub is_within: bool,
+}
+
+impl Passing {
+    /// True when it is the same rows that another passes through, and more.
+    pub fn holds_more_than(&self, other: &Self) -> bool {
+        self.rows.len() > other.rows.len() && other.rows.iter().all(|row| self.rows.contains(row))
+    }
 }
 
 /// Between which strips there is nothing but walls between halls, where no other crosses them.
@@ -156,7 +164,7 @@ impl<'a> Layout<'a> {
                 crosses_at(n, m).is_some_and(|(_, u)| from + width < u && u < to - width)
             });
             let next = next().filter(ends_before).copied().collect();
-            Passing { rows: own.len(), rest, next, is_led_on, is_within }
+            Passing { rows: own.clone(), rest, next, is_led_on, is_within }
         };
         crossed.iter().enumerate().map(of_strip).collect()
     }

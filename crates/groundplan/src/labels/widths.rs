@@ -1,10 +1,12 @@
 //! Ways across rows are of one width: what leads through all rows of a place tells what leads through some of them.
 
+use super::beside::placed;
 use super::corridors::Strip;
 use super::passing::{Passing, Place};
+use super::rows::SHORTEST;
 use super::sections::is_as_bays;
 use super::turned::Turned;
-use crate::ends::sorted;
+use crate::ends::{shared, sorted, wider};
 
 /// Ways across a place are of one width but for this share.
 const ALIKE: f64 = 0.15;
@@ -63,21 +65,29 @@ impl Widths {
 
 /// The strips without those that lead through some rows of a place and have no width of what leads through all: bays; nor
 /// those at a wall that the rows beside go on to. Where nothing leads through all but past their ends, what has no bays'
-/// width is none.
+/// width is none. Nor those beside which, with no rack between, one leads through more rows.
 pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
+    let placed = placed(views, strips.iter().map(Strip::place));
     for Place { views: [view, other], passing, .. } in Place::of_each(views, &strips) {
-        let whole = |n: &usize| passing[*n].rows >= 2 && passing[*n].next.is_empty();
+        let whole = |n: &usize| passing[*n].rows.len() >= 2 && passing[*n].next.is_empty();
         let is_told_within = (0..strips.len()).filter(whole).any(|n| passing[n].is_within);
         let known = Widths((0..strips.len()).filter(whole).map(|n| strips[n].width()).collect());
         for (n, own) in passing.iter().enumerate() {
-            let is_some = own.rows > 0 && !own.next.is_empty() && own.rest <= REST && !known.is_empty();
+            let is_some = !own.rows.is_empty() && !own.next.is_empty() && own.rest <= REST && !known.is_empty();
             // Where the rows beside it go on to the wall, one that does not is empty there.
-            let is_bay = || own.rows == 1 && !own.is_led_on && is_at_wall(other, &strips[n]);
+            let is_bay = || own.rows.len() == 1 && !own.is_led_on && is_at_wall(other, &strips[n]);
             let width = strips[n].width();
             // Ways past the rows' ends are as wide as the hall leaves, and tell nothing of what leads through the rows.
             let is_no_bay = || !is_told_within && view.pitch.is_some_and(|pitch| !is_as_bays(width, pitch));
             stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && !is_bay());
+            // With no rack between it and a way through more rows it leads through their last bays, which are empty.
+            let is_beside = |m: usize| {
+                let [low, high] = shared(strips[n].across, strips[m].across);
+                strips[m].direction == other.direction && low - high < SHORTEST && passing[m].holds_more_than(own)
+            };
+            let near = || placed[other.direction].touching(strips[n].along, wider(strips[n].across, SHORTEST));
+            stays[n] &= own.rows.is_empty() || own.rest > REST || !near().into_iter().any(is_beside);
         }
     }
     let mut flags = stays.into_iter();
