@@ -3,9 +3,11 @@
 use super::barriers;
 use super::beside::{Beside, placed};
 use super::corridors::{ASKEW, Strip};
+use super::gates::crossing;
 use super::turned::Turned;
-use crate::ends::{overlap, shared, sorted};
+use crate::ends::{around, overlap, shared, sorted};
 use crate::sets::Sets;
+use std::cmp::Ordering;
 
 /// Pieces share so much of the narrower one's width, which is so much of the wider one's, or where goods stand along one
 /// of them at any depth, so much.
@@ -82,8 +84,8 @@ pub fn apart(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
     strips
 }
 
-/// True when most of a way's middle, between its own sides, lies on a larger one that runs nearly the same way; of all it is
-/// known where they lie.
+/// True when most of a way's middle, between its own sides, lies on another that runs nearly the same way: one more nearly
+/// square to those that both cross, or as much so and larger. Of all it is known where they lie.
 fn lies_askew_on(views: &[Turned], strips: &[Strip], placed: &[Beside], n: usize) -> bool {
     let strip = &strips[n];
     let own = &views[strip.direction];
@@ -93,12 +95,13 @@ fn lies_askew_on(views: &[Turned], strips: &[Strip], placed: &[Beside], n: usize
     views.iter().filter(askew).any(|its| {
         let [from, to] = middle.map(|end| its.place(end));
         let [along, across] = [0, 1].map(|axis| sorted([from[axis], to[axis]]));
-        let is_larger = |m: usize| {
+        let comes_first = |m: usize| {
             let [size, larger] = [strip, &strips[m]].map(|strip| strip.length() * strip.width());
-            larger > size || larger == size && m < n
+            let is_larger = larger > size || larger == size && m < n;
+            squarer(views, strips, placed, [n, m]).unwrap_or(if is_larger { m } else { n }) == m
         };
         let near = placed[its.direction].touching(along, across).into_iter();
-        near.filter(|&m| is_larger(m)).any(|m| {
+        near.filter(|&m| comes_first(m)).any(|m| {
             // From which share of the middle to which the other holds it.
             let mut held: [f64; 2] = [0.0, 1.0];
             for (axis, sides) in [strips[m].along, strips[m].across].into_iter().enumerate() {
@@ -108,6 +111,36 @@ fn lies_askew_on(views: &[Turned], strips: &[Strip], placed: &[Beside], n: usize
             held[1] - held[0] > WITHIN
         })
     })
+}
+
+/// Which of two ways is of the direction that is most nearly square to more of the ways that both cross; nothing where that
+/// is as many.
+fn squarer(views: &[Turned], strips: &[Strip], placed: &[Beside], pair: [usize; 2]) -> Option<usize> {
+    let mut counts = [0; 2];
+    for view in views {
+        let square = crossing(views, view.direction);
+        let Some(own) = pair.iter().position(|&n| square.is_some_and(|square| square.direction == strips[n].direction))
+        else {
+            continue;
+        };
+        let corners = views[strips[pair[0]].direction].rectangle(strips[pair[0]].along, strips[pair[0]].across);
+        let [along, across] = [0, 1].map(|axis| around(corners.iter().map(|&corner| view.place(corner)[axis])));
+        let is_crossed = |way: &Strip, n: usize| {
+            let [s, u] = view.crossing(&views[strips[n].direction], way.middle(), strips[n].middle());
+            within(s, strips[n].along) && within(u, way.along)
+        };
+        let near = placed[view.direction].touching(along, across).into_iter();
+        counts[own] += near.filter(|&k| pair.iter().all(|&n| is_crossed(&strips[k], n))).count();
+    }
+    match counts[0].cmp(&counts[1]) {
+        Ordering::Less => Some(pair[1]),
+        Ordering::Equal => None,
+        Ordering::Greater => Some(pair[0]),
+    }
+}
+
+fn within(place: f64, [low, high]: [f64; 2]) -> bool {
+    (low..=high).contains(&place)
 }
 
 /// True when the way along one strip goes on as another, the next one; of all it is known where they lie, or lay.
