@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 import pytest
+from zoo import FREE, OCCUPIED, Canvas
 
 import groundplan
 
@@ -89,3 +90,62 @@ def test_ways_lead_past_rows_on_both_sides_of_what_nobody_saw_between_two_halls(
     junctions, widths = found(site(floors, [*below, *above]))
     assert junctions == ["L"] * 8 + ["T"] * 6 + ["X"] * 4
     assert widths == pytest.approx([2.4, 2.4, 3.0, 3.5, 3.5], abs=0.3)
+
+
+@pytest.mark.parametrize("wall", [0.1, 0.2, 0.4])
+@pytest.mark.parametrize("gate", [2.4, 4.2])
+def test_a_gate_in_a_thin_wall_between_two_aisles_is_a_way(wall: float, gate: float) -> None:
+    # It leads on into no aisle across, and is no wider than the ways past the rows' ends or as wide.
+    beyond = 14.2 + wall
+    floors: list[Box] = [(0, 0, 40, 14.2), (0, beyond, 40, beyond + 14.2), (16, 13, 16 + gate, beyond + 1)]
+    racks = rows([3, 8.6, beyond + 3, beyond + 8.6], [(4, 36)], depth=2.6)
+    junctions, widths = found(site(floors, racks))
+    assert junctions == ["L"] * 8 + ["T"] * 6
+    assert widths == pytest.approx(sorted([gate, 4.1, 4.1, 4.1, 4.1]), abs=0.2)
+
+
+def test_openings_between_the_pillars_of_two_aisles_are_no_gates() -> None:
+    pillars = [(n, 14.2, n + 0.4, 14.4) for n in np.arange(4.0, 37.0, 4.0).tolist()]
+    junctions, _ = found(site([(0, 0, 40, 28.6)], [*rows([3, 8.6, 17.4, 23], [(4, 36)], depth=2.6), *pillars]))
+    assert "X" not in junctions
+    assert junctions.count("T") <= 8
+
+
+@pytest.mark.parametrize(("turn", "free", "way"), [(8.5, 4.4, 3.0), (10.0, 5.0, 2.4), (10.0, 6.4, 3.0)])
+def test_a_way_across_rows_is_none_along_the_next_wing(turn: float, free: float, way: float) -> None:
+    # Between guards the way is straight. Beyond these bays are empty: a wider one leads through along the wing's rows.
+    length, aisle, depth, ends = 44, 3.6, 2.4, 4.5
+    height = 5 * (aisle + depth) + aisle
+    canvas = Canvas(1640, 952)
+
+    def box(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
+        canvas.box(20 * (x + 4), 20 * (y + 10), 20 * (right + 4), 20 * (top + 10), value)
+
+    def wing(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
+        cos, sin = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+        u, v = x, (y + top) / 2
+        start = (20 * (length + 9.2 + cos * u + sin * v), 20 * (6 + cos * v - sin * u))
+        canvas.bar(start, -turn, 20 * (right - x), 20 * (top - y), value)
+
+    box(-0.15, -0.15, length + 0.15, height + 0.15)
+    box(length - 0.3, 18.3, length + 9, 21.6)
+    wing(-0.15, -0.15, 20.15, 28.15)
+    box(0, 0, length, height, FREE)
+    wing(0, 0, 20, 28, FREE)
+    box(length - 0.3, 18.45, length + 9, 21.45, FREE)
+    middle = 0.45 * length
+    for low in (aisle + n * (aisle + depth) for n in range(5)):
+        askew = middle + (low + (depth - height) / 2) * np.tan(np.radians(turn))
+        box(ends, low, min(middle - way / 2, askew - free / 2), low + depth)
+        box(max(middle + way / 2, askew + free / 2), low, length - ends, low + depth)
+        for guard in (middle - way / 2 - 0.1, middle + way / 2):
+            box(guard, low, guard + 0.1, low + depth)
+    for n in range(4):
+        wing(3.4 + 4.4 * n, 4, 4.6 + 4.4 * n, 24)
+    survey = groundplan.survey(canvas.picture, resolution=RESOLUTION)
+    axes = [way["axis"] for way in survey.of_kind("corridor") if 15 < np.mean(way["axis"], axis=0)[0] < 32]
+    across = [axis for axis in axes if abs(np.subtract(*axis)[1]) > 10]
+    assert len(across) == 1
+    assert abs(np.subtract(*across[0])[0]) < 0.2
+    hall = [junction["type"] for junction in survey.of_kind("junction") if junction["at"][0] < 46]
+    assert hall.count("X") == 5

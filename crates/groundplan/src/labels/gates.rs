@@ -7,6 +7,7 @@ use super::look::Look;
 use super::rows::Row;
 use super::sections::{Columns, WIDTH};
 use super::seen::Seen;
+use super::thin;
 use super::through::{BETWEEN_CELLS, Through};
 use super::turned::Turned;
 use super::widths::Widths;
@@ -64,6 +65,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     gates.extend(as_wide.map(|(gate, ..)| gate));
     gates.retain(|gate| !through.iter().any(|way| is_in(gate, way)));
     gates.extend(through);
+    gates.extend(thin::gates(views, strips));
     in_line(gates)
 }
 

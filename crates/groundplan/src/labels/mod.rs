@@ -63,6 +63,7 @@ mod strips;
 mod summed;
 mod sums;
 mod sweep;
+mod thin;
 mod through;
 mod turned;
 mod uprights;

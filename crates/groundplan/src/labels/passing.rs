@@ -153,7 +153,11 @@ impl<'a> Layout<'a> {
             let middle = |n: usize| strips[aisles[n]].middle();
             let led = |&m: &usize| middle(rows[m].1[1]) - middle(rows[m].1[0]);
             let rest = own.iter().map(led).fold(strips[n].length(), |rest, led| rest - led);
-            let is_wall = |m: &usize| walls[*m] || own.iter().any(|&n| rows[*m].0.is_wall_beside(&rows[n].0));
+            // What leads through a wall alone tells nothing of the rows beside it, nor they of that.
+            let is_wall = |m: &usize| {
+                let is_beside = |one: usize, two: usize| rows[one].0.is_wall_beside(&rows[two].0);
+                walls[*m] || own.iter().any(|&n| is_beside(*m, n)) || own.iter().all(|&n| is_beside(n, *m))
+            };
             let beside = |m: usize| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]);
             let next = || own.iter().flat_map(|&m| beside(m)).filter(|m| !is_wall(m));
             let ends_before = |m: &&usize| crosses_at(n, **m).is_some_and(|(s, _)| !crosses(n, s));

@@ -140,6 +140,16 @@ impl<'a> Crossings<'a> {
 
     /// What lies between neighbouring corridors.
     pub fn between(&self) -> Vec<Row> {
+        self.so_deep(|depth| depth >= SHALLOW)
+    }
+
+    /// What lies between neighbouring corridors and is too thin for a row; their sides may lie a little within one another.
+    pub fn walls(&self) -> Vec<Row> {
+        self.so_deep(|depth| depth < SHALLOW)
+    }
+
+    /// What lies between neighbouring corridors and is as deep as is asked for.
+    fn so_deep(&self, is_so_deep: impl Fn(f64) -> bool) -> Vec<Row> {
         let Self { strips, extents, .. } = *self;
         let mut rows = Vec::new();
         for (n, strip) in strips.iter().enumerate() {
@@ -148,7 +158,7 @@ impl<'a> Crossings<'a> {
                 let [from, to] = extents[m];
                 let shared = open.iter().map(|(a, b)| (a.max(from), b.min(to))).filter(|(a, b)| a < b).collect();
                 open = without(open, from, to);
-                if depth >= SHALLOW {
+                if is_so_deep(depth) {
                     let across = [strip.across[1], strips[m].across[0]];
                     let pieces = self.uncrossed(strip.direction, across, shared).into_iter();
                     rows.extend(pieces.map(|along| Row {

@@ -102,24 +102,28 @@ impl Seen<'_> {
         is_within.then(|| self.way(ends))
     }
 
-    /// A way through it, from where to where along, as a strip of the direction that crosses it, from the middle of one
-    /// corridor to that of the other.
-    pub fn way(&self, [from, to]: [f64; 2]) -> Strip {
-        let [view, other] = self.views;
-        let sin = libm::sin(other.angle - view.angle);
-        let v = self.middle();
-        let [s, t] = other.place(view.to_map([f64::midpoint(from, to), v]));
-        let width = (to - from) * sin.abs();
-        let ends = self.middles.map(|middle| s + (middle - v) / sin);
-        Strip {
-            direction: other.direction,
-            along: sorted(ends),
-            across: [t - width / 2.0, t + width / 2.0],
-            score: self.row.depth(),
-            bays: false,
-            is_ragged: false,
-            unseen: [false; 2],
-            held: UNTOLD,
-        }
+    /// A way through it, from where to where along, from the middle of one corridor to that of the other.
+    pub fn way(&self, ends: [f64; 2]) -> Strip {
+        way(self.views, self.row, self.middles, ends)
+    }
+}
+
+/// A way through a row, from where to where along, as a strip of the direction that crosses it, from one place across to
+/// another.
+pub fn way([view, other]: [&Turned; 2], row: &Row, middles: [f64; 2], [from, to]: [f64; 2]) -> Strip {
+    let sin = libm::sin(other.angle - view.angle);
+    let v = f64::midpoint(row.across[0], row.across[1]);
+    let [s, t] = other.place(view.to_map([f64::midpoint(from, to), v]));
+    let width = (to - from) * sin.abs();
+    let ends = middles.map(|middle| s + (middle - v) / sin);
+    Strip {
+        direction: other.direction,
+        along: sorted(ends),
+        across: [t - width / 2.0, t + width / 2.0],
+        score: row.depth(),
+        bays: false,
+        is_ragged: false,
+        unseen: [false; 2],
+        held: UNTOLD,
     }
 }
