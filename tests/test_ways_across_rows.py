@@ -187,6 +187,18 @@ def test_a_way_staggered_as_others_are_is_known_though_one_of_two_racks_at_its_s
     assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 10
 
 
+def test_one_way_in_each_row_at_a_place_of_its_own_is_narrower_than_those_at_the_walls() -> None:
+    # Five rows of 1.4 m by 30 m, a way of 1.8 m through each, and ways of 3.2 m past their ends.
+    picture = hall(600 + 128, 5 * 28 + 6 * 44)
+    for row, way in enumerate((120, 400, 260, 500, 180)):
+        low = 20 + 44 + row * 72
+        picture[low : low + 28, 84 : 84 + 600] = 0
+        picture[low : low + 28, 84 + way : 84 + way + 36] = 254
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
+    assert sorted(across) == pytest.approx([1.8] * 5 + [3.2] * 2, abs=0.15)
+
+
 def pallets(ends: tuple[int, int], count: int, taken: list[set[int]], off: int = 0) -> Picture:
     """A hall with a rack of bays of 2.7 m on posts in each row, between ways as wide as given, in pixels.
 

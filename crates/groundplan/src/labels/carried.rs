@@ -64,7 +64,7 @@ pub fn without_ways(evidence: &Evidence, views: &[Turned], strips: &[Strip], on_
 /// the row before it, and the middles of the aisles beside that.
 fn each(views: &[Turned], strips: &[Strip], mut tell: impl FnMut(usize, &Lead, [f64; 2])) {
     let placed = placed(views, strips.iter().map(Strip::place));
-    for Place { views, aisles, rows, passing } in Place::of_each(views, strips) {
+    for Place { views, aisles, rows, passing, .. } in Place::of_each(views, strips) {
         for (n, own) in passing.iter().enumerate().filter(|(_, own)| own.rows.len() >= ROWS) {
             for (row, between) in own.next.iter().map(|&m| &rows[m]) {
                 let lead = Lead { views, row, strip: &strips[n] };

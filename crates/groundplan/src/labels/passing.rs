@@ -7,7 +7,7 @@ use super::rows::{self, Row};
 use super::turned::Turned;
 use super::whole;
 use crate::ends::{overlap, wider};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The aisles along a direction that another one crosses, and the rows between them.
 pub struct Place<'a> {
@@ -18,6 +18,8 @@ pub struct Place<'a> {
     pub rows: Vec<(Row, [usize; 2])>,
     /// Of each strip.
     pub passing: Vec<Passing>,
+    /// Which of the rows are walls between halls.
+    walls: Vec<bool>,
 }
 
 impl<'a> Place<'a> {
@@ -30,9 +32,21 @@ impl<'a> Place<'a> {
         let of = |layout: Layout<'a>| {
             let views = [layout.view, crossing(views, layout.view.direction)?];
             let passing = layout.passed_by(views, strips, &placed, &along);
-            Some(Self { views, aisles: layout.aisles, rows: layout.rows, passing })
+            Some(Self { views, aisles: layout.aisles, rows: layout.rows, passing, walls: layout.walls })
         };
         all.into_iter().filter_map(of).collect()
+    }
+}
+
+impl Place<'_> {
+    /// The rows of the part of the place that a row is of: those that lie one beside another, walls between halls left out.
+    pub fn rows_with(&self, row: usize) -> BTreeSet<usize> {
+        let (mut found, mut next) = (BTreeSet::from([row]), vec![row]);
+        while let Some(n) = next.pop() {
+            let is_beside = |m: &usize| self.rows[*m].1.iter().any(|aisle| self.rows[n].1.contains(aisle));
+            next.extend((0..self.rows.len()).filter(is_beside).filter(|&m| !self.walls[m] && found.insert(m)));
+        }
+        found
     }
 }
 

@@ -14,6 +14,8 @@ const ALIKE: f64 = 0.15;
 const REST: f64 = 6.0;
 /// A bay that is so much wider or narrower than a way, as a share of it, can be told from one.
 const APART: f64 = 0.1;
+/// Ways that lead through one row each are as many in each of so many rows at least.
+const ROWS: usize = 3;
 /// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
 const WALL: f64 = 0.9;
 const TAKEN: f64 = 0.5;
@@ -69,7 +71,8 @@ impl Widths {
 pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let placed = placed(views, strips.iter().map(Strip::place));
-    for Place { views: [view, other], passing, .. } in Place::of_each(views, &strips) {
+    for place in Place::of_each(views, &strips) {
+        let Place { views: [view, other], passing, .. } = &place;
         let whole = |n: &usize| passing[*n].rows.len() >= 2 && passing[*n].next.is_empty();
         let is_told_within = (0..strips.len()).filter(whole).any(|n| passing[n].is_within);
         let known = Widths((0..strips.len()).filter(whole).map(|n| strips[n].width()).collect());
@@ -79,7 +82,10 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
             let is_bay = || own.rows.len() == 1 && !own.is_led_on && is_at_wall(other, &strips[n]);
             let width = strips[n].width();
             // Ways past the rows' ends are as wide as the hall leaves, and tell nothing of what leads through the rows.
-            let is_no_bay = || !is_told_within && view.pitch.is_some_and(|pitch| !is_as_bays(width, pitch));
+            let is_no_bay = || {
+                !is_told_within
+                    && view.pitch.map_or_else(|| is_in_every_row(&place, &strips, n), |pitch| !is_as_bays(width, pitch))
+            };
             stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && !is_bay());
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
             let is_beside = |m: usize| {
@@ -92,6 +98,21 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     }
     let mut flags = stays.into_iter();
     strips.into_iter().filter(|_| flags.next().unwrap_or(true)).collect()
+}
+
+/// True when as many ways as wide as one lead through each of the rows of its place, and none through several: shelves are
+/// empty anywhere.
+fn is_in_every_row(place: &Place, strips: &[Strip], n: usize) -> bool {
+    let &[row] = &place.passing[n].rows[..] else { return false };
+    let rows = place.rows_with(row);
+    let is_as_wide = |m: &usize| (strips[*m].width() - strips[n].width()).abs() <= ALIKE * strips[n].width();
+    let through = |row: usize| {
+        let passing = place.passing.iter().enumerate().filter(|(_, own)| own.is_within && own.rows == [row]);
+        passing.filter(|(m, _)| is_as_wide(m)).count()
+    };
+    let own = through(row);
+    let leads_on = |own: &Passing| own.is_within && own.rows.len() > 1 && own.rows.iter().any(|row| rows.contains(row));
+    rows.len() >= ROWS && rows.iter().all(|&row| through(row) == own) && !place.passing.iter().any(leads_on)
 }
 
 /// True when a wall runs all along one side of a strip.
