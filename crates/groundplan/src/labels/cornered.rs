@@ -102,7 +102,11 @@ impl Behind<'_> {
             let mut gaps = gaps.map(|(from, to)| [far(from), far(to)]);
             let gap = gaps.find(|[from, to]| to - from >= least)?;
             let inner = wider(way.across, (INNER - 1.0) / 2.0 * way.width());
-            let is_corner = (DEPTH.0..=DEPTH.1).contains(&gap[0])
+            let far_side = place(gap[1])[0];
+            let on = if is_outwards { way.along[1] - far_side } else { far_side - way.along[0] };
+            // Behind the last rows no more than racks at a wall is left, and what leads between them.
+            let is_corner = on <= DEPTH.1
+                && (DEPTH.0..=DEPTH.1).contains(&gap[0])
                 && gap[1] - gap[0] <= widest
                 && self.other.mean_blocked(columns([0.0, gap[1]]), inner[0], inner[1]) <= CLUTTER;
             let at = |far: f64| self.view.place(self.other.to_map([place(far)[0], way.across[k]]));
