@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -148,6 +149,17 @@ def test_every_key_is_described() -> None:
             row = page.partition(f"\n| `{label['kind']}` |")[2].partition("\n")[0]
             assert {key for key in label if key != "kind" and f"`{key}`" not in row} == set(), label["kind"]
     assert all(f"`{name}`" in page for name in READING)
+
+
+def test_every_warning_is_described() -> None:
+    root = Path(__file__).parents[1]
+    sources = [*(root / "python").rglob("*.py"), *(root / "crates").rglob("*.rs")]
+    told = r"(?:MapWarning\(|warn\(|Warning \{\s*code:)\s*\"([a-z-]+)\""
+    codes = {code for path in sources for code in re.findall(told, path.read_text(encoding="utf-8"))}
+    page = (root / "docs/survey.md").read_text(encoding="utf-8")
+    table = page.partition("**warnings**:")[2].partition("\n\n**")[0]
+    rows = [row.split("|")[1] for row in table.splitlines() if row.startswith("| `")]
+    assert {code for row in rows for code in re.findall(r"`([a-z-]+)`", row)} == codes
 
 
 def test_a_survey_is_written_without_making_all_labels_at_once(tmp_path: Path) -> None:

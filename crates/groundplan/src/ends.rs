@@ -26,6 +26,11 @@ pub fn overlap(one: [f64; 2], two: [f64; 2]) -> f64 {
     high - low
 }
 
+/// True when a place lies between two ends, or is one.
+pub fn holds([low, high]: [f64; 2], place: f64) -> bool {
+    low <= place && place <= high
+}
+
 /// From the lowest of some places to the highest.
 pub fn around(places: impl Iterator<Item = f64>) -> [f64; 2] {
     places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], place| [low.min(place), high.max(place)])

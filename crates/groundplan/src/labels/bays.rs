@@ -10,6 +10,7 @@ use super::recall::Key;
 use super::rows::Row;
 use super::turned::Turned;
 use crate::bands::map_each;
+use crate::ends::holds;
 use std::sync::Arc;
 
 /// The shortest pitch that is looked for, and the longest, metres.
@@ -66,7 +67,7 @@ fn along(row: &Row, specks: &[[f64; 2]]) -> Vec<f64> {
     for face in row.across {
         let from = specks.partition_point(|s| s[0] < face - NEAR);
         let to = specks.partition_point(|s| s[0] <= face + NEAR);
-        let within = specks[from..to].iter().map(|s| s[1]).filter(|u| (row.along[0]..=row.along[1]).contains(u));
+        let within = specks[from..to].iter().map(|s| s[1]).filter(|u| holds(row.along, *u));
         let mut steps: Vec<i64> = within.map(|u| (u / STEP).round() as i64).collect();
         steps.sort_unstable();
         steps.dedup();

@@ -13,7 +13,7 @@ const SHORTEST_SIDE: f64 = 0.25;
 const FACE: f64 = 0.6;
 const FACE_GAP: f64 = 0.3;
 /// What speaks against a corridor, in columns that speak for it: an opening at a side, and a strip that is blocked.
-const OPEN: f64 = 0.15;
+pub const OPEN: f64 = 0.15;
 const BLOCKED: f64 = 6.0;
 /// Structure along the strip between its sides: another wall, or the face of a pallet.
 const PARTED: f64 = 1.0;

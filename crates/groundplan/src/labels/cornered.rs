@@ -2,16 +2,19 @@
 //! corners show where a way along their backs begins, and what stands across from these where it ends.
 
 use super::barriers;
-use super::corridors::{Strip, UNTOLD};
+use super::beside::{Beside, placed};
+use super::corridors::Strip;
 use super::family;
 use super::gates::square_to;
 use super::known::{Known, Led};
 use super::rows::{DEPTH, SAME};
 use super::runs::runs;
+use super::stretches;
 use super::turned::Turned;
-use crate::ends::{overlap, sorted, wider};
+use crate::ends::{around, holds, overlap, sorted, wider};
 use crate::parameters::Parameters;
-use std::collections::BTreeMap;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
 
 /// What stands so near to a way's side, metres, stands on it.
 const SIDE: f64 = 0.25;
@@ -25,10 +28,11 @@ const UNSEEN: [f64; 2] = [0.1, 0.85];
 /// The ways with those behind the last rows that are not known; none where there are no such.
 pub fn with(views: &[Turned], strips: &[Strip], parameters: &Parameters) -> Option<Vec<Strip>> {
     let mut known = Known::new(views, strips);
+    let placed = placed(views, strips.iter().map(Strip::place));
     for view in views {
         let Some(other) = square_to(views, view.direction) else { continue };
         for side in [0, 1] {
-            let behind = Behind { view, other, strips, side, parameters };
+            let behind = Behind { view, other, strips, placed: &placed[view.direction], side, parameters };
             behind.ways().into_iter().for_each(|way| known.add(way));
         }
     }
@@ -36,7 +40,6 @@ pub fn with(views: &[Turned], strips: &[Strip], parameters: &Parameters) -> Opti
 }
 
 /// The corner of a row beside a way that leads past it.
-#[derive(Clone)]
 struct Corner {
     way: usize,
     /// On which side of the way, along the rows.
@@ -51,11 +54,42 @@ impl Corner {
     }
 }
 
+/// The corners in line with one, and its gap: each time with the one, of those left, in line with which most are.
+fn in_lines(corners: &[Corner]) -> Vec<([f64; 2], Vec<&Corner>)> {
+    let from = |n: usize| corners[n].gap[0];
+    let mut order: Vec<usize> = (0..corners.len()).collect();
+    order.sort_by(|&a, &b| from(a).total_cmp(&from(b)));
+    let in_line = |n: usize, is_left: &[bool]| -> Vec<usize> {
+        // Twice as far on both sides, for what floats round.
+        let [low, high] = wider([from(n); 2], 2.0 * SAME);
+        let near = order[order.partition_point(|&m| from(m) < low)..].iter().copied();
+        near.take_while(|&m| from(m) <= high).filter(|&m| is_left[m] && corners[n].is_in_line(&corners[m])).collect()
+    };
+    let mut is_left = vec![true; corners.len()];
+    let all = (0..corners.len()).map(|n| (in_line(n, &is_left).len(), Reverse(n)));
+    let mut most: BinaryHeap<(usize, Reverse<usize>)> = all.collect();
+    let mut found = Vec::new();
+    while let Some((count, Reverse(n))) = most.pop() {
+        let now = if is_left[n] { in_line(n, &is_left) } else { continue };
+        if now.len() < count {
+            most.push((now.len(), Reverse(n)));
+            continue;
+        }
+        for &m in &now {
+            is_left[m] = false;
+        }
+        found.push((corners[n].gap, now.into_iter().map(|m| &corners[m]).collect()));
+    }
+    found
+}
+
 /// One side of the aisles of a direction, and the ways that cross them.
 struct Behind<'a> {
     view: &'a Turned,
     other: &'a Turned,
     strips: &'a [Strip],
+    /// Those along the aisles.
+    placed: &'a Beside,
     side: usize,
     parameters: &'a Parameters,
 }
@@ -63,16 +97,8 @@ struct Behind<'a> {
 impl Behind<'_> {
     fn ways(&self) -> Vec<Led> {
         let leading = (0..self.strips.len()).filter(|&n| self.strips[n].direction == self.other.direction);
-        let mut corners: Vec<Corner> = leading.flat_map(|n| self.corners(n)).collect();
-        let mut found = Vec::new();
-        while let Some(best) =
-            corners.iter().rev().max_by_key(|one| corners.iter().filter(|two| one.is_in_line(two)).count())
-        {
-            let (in_line, left) = corners.iter().cloned().partition(|corner| corner.is_in_line(best));
-            found.extend(self.along(best.gap, in_line));
-            corners = left;
-        }
-        found
+        let corners: Vec<Corner> = leading.flat_map(|n| self.corners(n)).collect();
+        in_lines(&corners).into_iter().flat_map(|(gap, in_line)| self.along(gap, &in_line)).collect()
     }
 
     /// The corners on both sides of a way behind the last aisle that it crosses.
@@ -120,16 +146,17 @@ impl Behind<'_> {
     fn last_crossed(&self, way: &Strip) -> Option<&Strip> {
         let is_crossed = |aisle: &&Strip| {
             let [s, u] = self.view.crossing(self.other, aisle.middle(), way.middle());
-            aisle.direction == self.view.direction
-                && (way.along[0]..=way.along[1]).contains(&s)
-                && overlap(aisle.along, wider([u; 2], way.width() / 2.0)) >= 0.0
+            holds(way.along, s) && overlap(aisle.along, wider([u; 2], way.width() / 2.0)) >= 0.0
         };
+        let ends = way.along.map(|s| self.view.place(self.other.to_map([s, way.middle()])));
+        let [along, across] = [0, 1].map(|axis| wider(around(ends.iter().map(|end| end[axis])), way.width()));
+        let near = self.placed.touching(along, across).into_iter().map(|n| &self.strips[n]);
         let outwards = |aisle: &Strip| if self.side == 0 { -aisle.middle() } else { aisle.middle() };
-        self.strips.iter().filter(is_crossed).max_by(|a, b| outwards(a).total_cmp(&outwards(b)))
+        near.filter(is_crossed).max_by(|a, b| outwards(a).total_cmp(&outwards(b)))
     }
 
     /// The ways along a gap behind rows that show both their corners, one beside another.
-    fn along(&self, gap: [f64; 2], corners: Vec<Corner>) -> Vec<Led> {
+    fn along(&self, gap: [f64; 2], corners: &[&Corner]) -> Vec<Led> {
         let middle = f64::midpoint(gap[0], gap[1]);
         let ends = |n: usize| sorted(self.strips[n].across.map(|t| self.view.crossing(self.other, middle, t)[1]));
         let mut sides: BTreeMap<usize, [bool; 2]> = BTreeMap::new();
@@ -144,16 +171,7 @@ impl Behind<'_> {
         let runs = leading.chunk_by(goes_on).filter(|run| run.len() > 1);
         runs.map(|run| {
             let [first, last] = [run[0].0, run[run.len() - 1].0];
-            let way = Strip {
-                direction: self.view.direction,
-                along: [first[0], last[1]],
-                across: gap,
-                score: last[1] - first[0],
-                bays: false,
-                is_ragged: true,
-                unseen: [false; 2],
-                held: UNTOLD,
-            };
+            let way = stretches::ragged(self.view, [first[0], last[1]], gap, last[1] - first[0]);
             Led { way, middles: [first, last].map(|ends| f64::midpoint(ends[0], ends[1])) }
         })
         .collect()
@@ -166,7 +184,7 @@ impl Behind<'_> {
         let taken = self.view.some_occupied(columns.clone(), low, high);
         let unseen = self.view.mean_blocked(columns.clone(), low, high);
         taken.iter().sum::<f64>() <= TAKEN * taken.len() as f64
-            && (UNSEEN[0]..=UNSEEN[1]).contains(&unseen)
+            && holds(UNSEEN, unseen)
             && !barriers::among(self.view, gap, columns).any()
     }
 }

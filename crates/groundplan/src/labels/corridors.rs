@@ -11,6 +11,7 @@ use super::ragged::{self, Ways};
 use super::turned::Turned;
 use super::{Evidence, mouths};
 use crate::bands::map_each;
+use crate::ends::holds;
 
 /// A strip of free space along one direction, in the direction's own places (metres along and across).
 #[derive(Clone, Debug, PartialEq)]
@@ -140,9 +141,7 @@ fn is_askew_in(views: &[Turned], one: &Strip, others: &[Strip], placed: &[Beside
     let askew = |its: &&Turned| its.direction != own.direction && libm::sin(own.angle - its.angle).abs() < ASKEW;
     views.iter().filter(askew).any(|its| {
         let [u, v] = its.place(middle);
-        let holds = |other: &Strip| {
-            (other.along[0]..=other.along[1]).contains(&u) && (other.across[0]..=other.across[1]).contains(&v)
-        };
+        let holds = |other: &Strip| holds(other.along, u) && holds(other.across, v);
         placed[its.direction].touching([u; 2], [v; 2]).into_iter().any(|n| holds(&others[n]))
     })
 }

@@ -5,7 +5,7 @@ use super::beside::placed;
 use super::corridors::Strip;
 use super::rows::{Row, SAME};
 use super::turned::Turned;
-use crate::ends::{overlap, shared, wider};
+use crate::ends::{holds, overlap, shared, wider};
 
 /// So much of what was not seen may be taken.
 const CLUTTER: f64 = 0.05;
@@ -34,8 +34,7 @@ pub fn whole(views: &[Turned], strips: &[Strip], racks: &[Row]) -> Vec<Strip> {
             // The racks that stand along both its sides where it ends.
             let facing = |side: usize| {
                 let is_beside = |rack: &&Row| {
-                    (rack.across[1 - side] - strip.across[side]).abs() <= SAME
-                        && (rack.along[0]..=rack.along[1]).contains(&strip.along[end])
+                    (rack.across[1 - side] - strip.across[side]).abs() <= SAME && holds(rack.along, strip.along[end])
                 };
                 near.iter().map(|&n| &racks[n]).find(is_beside)
             };

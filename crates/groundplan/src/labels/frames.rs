@@ -1,6 +1,7 @@
 //! Frames: two legs of a rack that stand across from each other, or the plate that joins them.
 
 use super::uprights::Upright;
+use crate::ends::holds;
 use std::collections::BTreeMap;
 
 /// A leg is no wider than this, metres.
@@ -45,7 +46,7 @@ pub fn frames(uprights: &[Upright], [cos, sin]: [f64; 2]) -> (Vec<Frame>, Legs) 
         let [along, across] = upright.extents([cos, sin]);
         if along <= LEG && across <= LEG {
             all.push([u, v]);
-        } else if along <= LEG && (DEPTH[0]..=DEPTH[1]).contains(&across) {
+        } else if along <= LEG && holds(DEPTH, across) {
             frames.push(Frame { at: u, faces: [v - across / 2.0, v + across / 2.0] });
         }
     }
@@ -104,7 +105,7 @@ impl Legs {
     fn frame(&self, leg: [f64; 2]) -> Option<Frame> {
         let other = self.next(leg, 1.0)?;
         let depth = other[1] - leg[1];
-        if !(DEPTH[0]..=DEPTH[1]).contains(&depth) {
+        if !holds(DEPTH, depth) {
             return None;
         }
         let is_frame = self.is_open(leg, -1.0, depth) && self.is_open(other, 1.0, depth);

@@ -13,7 +13,7 @@ use super::turned::Turned;
 use super::widths::Widths;
 use crate::bands::flat_map_each;
 use crate::bits::Bits;
-use crate::ends::{around, overlap, wider};
+use crate::ends::{around, holds, overlap, wider};
 use std::cell::LazyCell;
 use std::ops::Range;
 
@@ -102,7 +102,7 @@ fn up_to_walls(views: &[Turned], strips: &[Strip], placed: &[Beside], widest: f6
     let is_crossed = |u: f64| {
         near.iter().map(|&n| &strips[n]).any(|strip| {
             let [s, at] = view.crossing(other, middle, strip.middle());
-            (strip.along[0]..=strip.along[1]).contains(&s) && (at - u).abs() < strip.width()
+            holds(strip.along, s) && (at - u).abs() < strip.width()
         })
     };
     let most = (WIDTH.1 / view.cell) as usize;

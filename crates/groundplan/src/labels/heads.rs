@@ -2,7 +2,7 @@
 //! between them and the wall has no line for its other side, or a wrong one, and yet the aisles between the rows lead there.
 
 use super::Evidence;
-use super::corridors::{Strip, UNTOLD};
+use super::corridors::Strip;
 use super::family;
 use super::gates::square_to;
 use super::known::{Known, Led};
@@ -10,6 +10,7 @@ use super::look::Look;
 use super::rows::Row;
 use super::sections::Columns;
 use super::shut;
+use super::stretches;
 use super::turned::Turned;
 use crate::bands::flat_map_each;
 use crate::ends::sorted;
@@ -161,16 +162,7 @@ impl Heads<'_> {
         let [low, high] = [across[0] + margin, across[1] - margin];
         let is_clear = !self.other.some_closed(columns.clone(), low, high).any()
             && self.other.mean_blocked(columns, low, high) <= CLEAR;
-        let way = Strip {
-            direction: self.other.direction,
-            along,
-            across,
-            score: along[1] - along[0],
-            bays: false,
-            is_ragged: true,
-            unseen: [false; 2],
-            held: UNTOLD,
-        };
+        let way = stretches::ragged(self.other, along, across, along[1] - along[0]);
         let middles = [first, last].map(|aisle| self.other.place(self.view.to_map([wall, aisle.middle()]))[0]);
         is_clear.then_some(Led { way, middles: sorted(middles) })
     }

@@ -5,7 +5,7 @@ use super::beside::{Beside, placed};
 use super::corridors::{ASKEW, Strip};
 use super::gates::crossing;
 use super::turned::Turned;
-use crate::ends::{around, overlap, shared, sorted};
+use crate::ends::{around, holds, overlap, shared, sorted};
 use crate::sets::Sets;
 use std::cmp::Ordering;
 
@@ -127,7 +127,7 @@ fn squarer(views: &[Turned], strips: &[Strip], placed: &[Beside], pair: [usize; 
         let [along, across] = [0, 1].map(|axis| around(corners.iter().map(|&corner| view.place(corner)[axis])));
         let is_crossed = |way: &Strip, n: usize| {
             let [s, u] = view.crossing(&views[strips[n].direction], way.middle(), strips[n].middle());
-            within(s, strips[n].along) && within(u, way.along)
+            holds(strips[n].along, s) && holds(way.along, u)
         };
         let near = placed[view.direction].touching(along, across).into_iter();
         counts[own] += near.filter(|&k| pair.iter().all(|&n| is_crossed(&strips[k], n))).count();
@@ -137,10 +137,6 @@ fn squarer(views: &[Turned], strips: &[Strip], placed: &[Beside], pair: [usize; 
         Ordering::Equal => None,
         Ordering::Greater => Some(pair[0]),
     }
-}
-
-fn within(place: f64, [low, high]: [f64; 2]) -> bool {
-    (low..=high).contains(&place)
 }
 
 /// True when the way along one strip goes on as another, the next one; of all it is known where they lie, or lay.

@@ -4,7 +4,7 @@
 use super::beside::Beside;
 use super::corridors::{self, Strip};
 use super::turned::Turned;
-use crate::ends::{around, overlap, wider};
+use crate::ends::{around, holds, overlap, wider};
 
 /// A way opens into another when its end is so near to the other's side, metres.
 const MOUTH: f64 = 3.0;
@@ -43,7 +43,7 @@ pub fn is_opened_into(views: &[Turned], way: &Strip, strips: &[Strip], placed: &
     let opens = |its: &Turned, strip: &Strip| {
         strip.along.into_iter().any(|end| {
             let [u, v] = own.place(its.to_map([end, strip.middle()]));
-            (way.along[0]..=way.along[1]).contains(&u) && (v - way.middle()).abs() <= way.width() / 2.0 + MOUTH
+            holds(way.along, u) && (v - way.middle()).abs() <= way.width() / 2.0 + MOUTH
         })
     };
     let reached = own.rectangle(way.along, wider(way.across, MOUTH));

@@ -11,7 +11,7 @@ use super::rows::Row;
 use super::uprights::Upright;
 use crate::bands::{map_each, worth};
 use crate::directions::Directions;
-use crate::ends::{both, overlap};
+use crate::ends::{both, holds, overlap};
 use crate::grid::{Grid, State};
 use std::collections::BTreeMap;
 
@@ -84,8 +84,7 @@ fn holds_middle(directions: &Directions, row: &Row, other: &Row) -> bool {
     let [own, its] = [row, other].map(|row| directions.angles[row.direction]);
     let (sin, cos) = (libm::sin(its - own), libm::cos(its - own));
     let [u, v] = [other.along, other.across].map(|ends| f64::midpoint(ends[0], ends[1]));
-    (row.along[0]..=row.along[1]).contains(&(u * cos - v * sin))
-        && (row.across[0]..=row.across[1]).contains(&(u * sin + v * cos))
+    holds(row.along, u * cos - v * sin) && holds(row.across, u * sin + v * cos)
 }
 
 /// Frames that follow one another at one pitch.

@@ -6,7 +6,7 @@ use super::gates::{crossing, leading_across};
 use super::rows::{self, Row};
 use super::turned::Turned;
 use super::whole;
-use crate::ends::{overlap, wider};
+use crate::ends::{holds, overlap, wider};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The aisles along a direction that another one crosses, and the rows between them.
@@ -18,6 +18,8 @@ pub struct Place<'a> {
     pub rows: Vec<(Row, [usize; 2])>,
     /// Of each strip.
     pub passing: Vec<Passing>,
+    /// Above and below each aisle.
+    beside: Vec<[Vec<usize>; 2]>,
     /// Which of the rows are walls between halls.
     walls: Vec<bool>,
 }
@@ -32,7 +34,8 @@ impl<'a> Place<'a> {
         let of = |layout: Layout<'a>| {
             let views = [layout.view, crossing(views, layout.view.direction)?];
             let passing = layout.passed_by(views, strips, &placed, &along);
-            Some(Self { views, aisles: layout.aisles, rows: layout.rows, passing, walls: layout.walls })
+            let Layout { aisles, rows, beside, walls, .. } = layout;
+            Some(Self { views, aisles, rows, passing, beside, walls })
         };
         all.into_iter().filter_map(of).collect()
     }
@@ -43,8 +46,8 @@ impl Place<'_> {
     pub fn rows_with(&self, row: usize) -> BTreeSet<usize> {
         let (mut found, mut next) = (BTreeSet::from([row]), vec![row]);
         while let Some(n) = next.pop() {
-            let is_beside = |m: &usize| self.rows[*m].1.iter().any(|aisle| self.rows[n].1.contains(aisle));
-            next.extend((0..self.rows.len()).filter(is_beside).filter(|&m| !self.walls[m] && found.insert(m)));
+            let beside = self.rows[n].1.into_iter().flat_map(|aisle| self.beside[aisle].iter().flatten().copied());
+            next.extend(beside.filter(|&m| !self.walls[m] && found.insert(m)));
         }
         found
     }
@@ -100,6 +103,8 @@ struct Layout<'a> {
     view: &'a Turned,
     aisles: Vec<usize>,
     rows: Vec<(Row, [usize; 2])>,
+    /// Above and below each aisle.
+    beside: Vec<[Vec<usize>; 2]>,
     /// Which of the rows are walls between halls.
     walls: Vec<bool>,
 }
@@ -120,7 +125,12 @@ impl<'a> Layout<'a> {
         let rows: Vec<_> = rows.filter_map(|row| row.between.map(|between| (row, between))).collect();
         let is_wall = |between: [usize; 2]| halls.get(&between.map(|n| aisles[n])).is_some_and(|is_wall| *is_wall);
         let walls = rows.iter().map(|(_, between)| is_wall(*between)).collect();
-        Self { view, aisles, rows, walls }
+        let mut beside: Vec<[Vec<usize>; 2]> = vec![Default::default(); aisles.len()];
+        for (n, (_, [below, above])) in rows.iter().enumerate() {
+            beside[*below][0].push(n);
+            beside[*above][1].push(n);
+        }
+        Self { view, aisles, rows, beside, walls }
     }
 
     /// What each strip passes through of the rows, which lie between aisles, along which it is not.
@@ -131,7 +141,7 @@ impl<'a> Layout<'a> {
         placed: &[Beside],
         along: &[f64],
     ) -> Vec<Passing> {
-        let Self { aisles, rows, walls, .. } = self;
+        let Self { aisles, rows, beside, walls, .. } = self;
         let widest = corridors::widest(strips);
         // Where a strip would cross a row if it were as long: along the strip, if it is none of the aisles' own kind.
         let place = |n: usize, row: &Row, between: [usize; 2]| {
@@ -147,15 +157,11 @@ impl<'a> Layout<'a> {
             (from..=to).contains(&u).then_some((s, u))
         };
         let crosses_at = |n: usize, m: usize| place(n, &rows[m].0, rows[m].1);
-        let crosses = |n: usize, s: f64| (strips[n].along[0]..=strips[n].along[1]).contains(&s);
-        // The rows above and below each aisle.
-        let mut beside: Vec<[Vec<usize>; 2]> = vec![Default::default(); aisles.len()];
+        let crosses = |n: usize, s: f64| holds(strips[n].along, s);
         let mut crossed: Vec<Vec<usize>> = vec![Vec::new(); strips.len()];
         // And what leads through each row.
         let mut through: Vec<Vec<usize>> = vec![Vec::new(); rows.len()];
-        for (m, (row, between)) in rows.iter().enumerate() {
-            beside[between[0]][0].push(m);
-            beside[between[1]][1].push(m);
+        for (m, (row, _)) in rows.iter().enumerate() {
             for n in leading_across([view, other], placed, row, widest) {
                 if crosses_at(n, m).is_some_and(|(s, _)| crosses(n, s)) {
                     crossed[n].push(m);

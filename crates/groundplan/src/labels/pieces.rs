@@ -1,7 +1,7 @@
 //! What a strip between two lines is, column by column, and which pieces of it are corridors.
 
 use super::barriers;
-use super::columns::{BAY, Column, NARROWED, Side, Walled, count};
+use super::columns::{self, BAY, Column, NARROWED, Side, Walled, count};
 use super::corridors::Strip;
 use super::family::Family;
 use super::runs::{best_pieces, runs};
@@ -35,7 +35,7 @@ const BARE: f64 = 0.7;
 /// No less than a walled column says for a corridor, and no more than one that is not says against it: in thousandths, and
 /// apart from what floats round.
 const MOST_FOR: i64 = 1000;
-const LEAST_AGAINST: i64 = 149;
+const LEAST_AGAINST: i64 = (1000.0 * columns::OPEN) as i64 - 1;
 /// A strip from so many to so many pitches wide may be a row of bays.
 pub const BAY_WIDTH: (f64, f64) = (0.65, 1.17);
 /// It is none when walls run along both its sides, with hardly a gap.

@@ -6,7 +6,7 @@ use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
 use super::near::Near;
 use super::turned::{Turned, least_sine};
-use crate::ends::{overlap, shared, wider};
+use crate::ends::{holds, overlap, shared, wider};
 
 /// A piece of a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +54,7 @@ impl Row {
     /// True when a point of the map frame lies in it.
     pub fn holds(&self, views: &[Turned], point: [f64; 2]) -> bool {
         let [u, v] = views[self.direction].place(point);
-        (self.along[0]..=self.along[1]).contains(&u) && (self.across[0]..=self.across[1]).contains(&v)
+        holds(self.along, u) && holds(self.across, v)
     }
 }
 
@@ -288,7 +288,7 @@ pub fn crossed(
     across: [f64; 2],
 ) -> Option<[f64; 2]> {
     let ends = across_row(view, other, crossing, across);
-    let within = ends.iter().any(|[s, _]| (extent[0]..=extent[1]).contains(s));
+    let within = ends.iter().any(|[s, _]| holds(extent, *s));
     within.then(|| ends.map(|[_, u]| u))
 }
 

@@ -6,7 +6,7 @@ use super::gates;
 use super::rows::{DEPTH, Row};
 use super::sections::Columns;
 use super::turned::Turned;
-use crate::ends::{overlap, sorted, wider};
+use crate::ends::{holds, overlap, sorted, wider};
 
 /// A row goes on up to a wall that is so near to its end, metres.
 const NEAR: f64 = 0.3;
@@ -60,7 +60,7 @@ impl Seen<'_> {
 
     /// True when what lies there across the crossing direction crosses it.
     pub fn holds(&self, across: f64) -> bool {
-        (self.row.along[0]..=self.row.along[1]).contains(&self.along(across))
+        holds(self.row.along, self.along(across))
     }
 
     /// True when a wall ends the row and the corridors beside it, but for what leads on through a gate.
@@ -88,7 +88,7 @@ impl Seen<'_> {
             let held = view.blocked_where(columns.clone(), low, high, |share| share > 0.0);
             held.count(0..columns.len()) as f64 >= BOUNDED * columns.len() as f64
         };
-        let leads = |n: usize| (strips[n].along[0]..=strips[n].along[1]).contains(&middle);
+        let leads = |n: usize| holds(strips[n].along, middle);
         let [below, above] = self.between;
         let [low, high] = [strips[below].across[0], strips[above].across[1]];
         [below, above].into_iter().any(leads)

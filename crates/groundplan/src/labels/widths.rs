@@ -7,6 +7,7 @@ use super::rows::SHORTEST;
 use super::sections::is_as_bays;
 use super::turned::Turned;
 use crate::ends::{shared, sorted, wider};
+use std::cell::LazyCell;
 
 /// Ways across a place are of one width but for this share.
 const ALIKE: f64 = 0.15;
@@ -76,6 +77,7 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
         let whole = |n: &usize| passing[*n].rows.len() >= 2 && passing[*n].next.is_empty();
         let is_told_within = (0..strips.len()).filter(whole).any(|n| passing[n].is_within);
         let known = Widths((0..strips.len()).filter(whole).map(|n| strips[n].width()).collect());
+        let through = LazyCell::new(|| Through::new(&place, &strips));
         for (n, own) in passing.iter().enumerate() {
             let is_some = !own.rows.is_empty() && !own.next.is_empty() && own.rest <= REST && !known.is_empty();
             // Where the rows beside it go on to the wall, one that does not is empty there.
@@ -84,7 +86,9 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
             // Ways past the rows' ends are as wide as the hall leaves, and tell nothing of what leads through the rows.
             let is_no_bay = || {
                 !is_told_within
-                    && view.pitch.map_or_else(|| is_in_every_row(&place, &strips, n), |pitch| !is_as_bays(width, pitch))
+                    && view
+                        .pitch
+                        .map_or_else(|| through.is_in_every_row(&place, own, width), |pitch| !is_as_bays(width, pitch))
             };
             stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && !is_bay());
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
@@ -100,19 +104,37 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     strips.into_iter().filter(|_| flags.next().unwrap_or(true)).collect()
 }
 
-/// True when as many ways as wide as one lead through each of the rows of its place, and none through several: shelves are
-/// empty anywhere.
-fn is_in_every_row(place: &Place, strips: &[Strip], n: usize) -> bool {
-    let &[row] = &place.passing[n].rows[..] else { return false };
-    let rows = place.rows_with(row);
-    let is_as_wide = |m: &usize| (strips[*m].width() - strips[n].width()).abs() <= ALIKE * strips[n].width();
-    let through = |row: usize| {
-        let passing = place.passing.iter().enumerate().filter(|(_, own)| own.is_within && own.rows == [row]);
-        passing.filter(|(m, _)| is_as_wide(m)).count()
-    };
-    let own = through(row);
-    let leads_on = |own: &Passing| own.is_within && own.rows.len() > 1 && own.rows.iter().any(|row| rows.contains(row));
-    rows.len() >= ROWS && rows.iter().all(|&row| through(row) == own) && !place.passing.iter().any(leads_on)
+/// What leads through each of the rows of a place within it.
+struct Through {
+    /// How wide what leads through this one alone is, metres.
+    alone: Vec<Vec<f64>>,
+    /// Whether something leads through this one and others.
+    on: Vec<bool>,
+}
+
+impl Through {
+    fn new(place: &Place, strips: &[Strip]) -> Self {
+        let rows = place.rows.len();
+        let mut made = Self { alone: vec![Vec::new(); rows], on: vec![false; rows] };
+        for (strip, own) in strips.iter().zip(&place.passing).filter(|(_, own)| own.is_within) {
+            match own.rows[..] {
+                [row] => made.alone[row].push(strip.width()),
+                _ => own.rows.iter().for_each(|&row| made.on[row] = true),
+            }
+        }
+        made
+    }
+
+    /// True when as many ways as wide as one lead through each of the rows of its place, and none through several: shelves
+    /// are empty anywhere.
+    fn is_in_every_row(&self, place: &Place, own: &Passing, width: f64) -> bool {
+        let &[row] = &own.rows[..] else { return false };
+        let rows = place.rows_with(row);
+        let is_as_wide = |other: &&f64| (*other - width).abs() <= ALIKE * width;
+        let alike = |row: usize| self.alone[row].iter().filter(is_as_wide).count();
+        let own_alike = alike(row);
+        rows.len() >= ROWS && rows.iter().all(|&n| !self.on[n] && alike(n) == own_alike)
+    }
 }
 
 /// True when a wall runs all along one side of a strip.

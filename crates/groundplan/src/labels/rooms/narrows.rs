@@ -6,6 +6,7 @@ use super::clearance::{Clearance, Rows, within};
 use super::gaps::Bar;
 use super::raster::Raster;
 use crate::bands::map_each_in;
+use crate::ends::holds;
 use crate::sets::Sets;
 use std::ops::Range;
 
@@ -106,8 +107,7 @@ impl<'a> Window<'a> {
         let beside = std::iter::once(block).chain(self.blocks.beside(block));
         let free = beside.filter(|&block| self.blocks.clearance[block] != 0);
         let pixels = free.map(|block| self.blocks.widest(block, self.pixels));
-        let is_narrow =
-            |&[x, y]: &[usize; 2]| (self.narrows[0]..=self.narrows[1]).contains(&f64::from(self.pixels.row(y)[x]));
+        let is_narrow = |&[x, y]: &[usize; 2]| holds(self.narrows, f64::from(self.pixels.row(y)[x]));
         let closures = pixels.filter(is_narrow).filter_map(|pixel| self.closure(pixel).map(|bar| (pixel, bar)));
         closures.min_by(|a, b| a.1.length().total_cmp(&b.1.length()))
     }
