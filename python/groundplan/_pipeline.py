@@ -161,7 +161,7 @@ def surveyed(
         **{name: made(kind, found[name]) for name, kind in stages.items()},
     )
     # For its routes and its updates, and no part of what it is.
-    kept = {"_gradients": found["gradients"], "_memory": found["memory"]} if keep else {}
+    kept = {"_gradients": found["gradients"] or parts["gradients"], "_memory": found["memory"]} if keep else {}
     survey.__dict__.update(_map=map, _own=own, **kept)
     labels: _core.Labels = found["labels"]
     some = Table(len(labels), lambda some: labels.some(*some.indices(len(labels))[:2]), LABELS)

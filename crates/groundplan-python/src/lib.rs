@@ -46,7 +46,7 @@ mod _core {
         parameters::values(py, &parameters::read(parameters)?)
     }
 
-    /// All stages in a row, but for those that are given; the gradients are kept where they will be wanted again.
+    /// All stages in a row, but for those that are given; gradients that were found are kept where they will be wanted again.
     #[pyfunction]
     fn survey<'py>(
         py: Python<'py>,
@@ -58,10 +58,11 @@ mod _core {
     ) -> PyResult<Bound<'py, PyDict>> {
         let parameters = parameters::read(parameters)?;
         let given = Given { keep, ..convert::given(given, &layout.frame())? };
+        let are_new = keep && given.gradients.is_none();
         let made = layout.with_grid(py, |grid| groundplan::survey(grid, &parameters, given, threads))?;
         // There is a face at least: none are where they are not kept.
         let divided = Some(made.subdivision).filter(|made| made.faces() > 0);
-        let gradients = keep.then_some(made.gradients).map(|kept| convert::from_gradients(py, kept)).transpose()?;
+        let gradients = are_new.then_some(made.gradients).map(|kept| convert::from_gradients(py, kept)).transpose()?;
         Ok(Named::new(py)
             .with("gradients", gradients)?
             .with("memory", Memory(made.memory))?

@@ -12,6 +12,7 @@ use super::turned::Turned;
 use super::{Evidence, mouths};
 use crate::bands::map_each;
 use crate::ends::holds;
+use crate::sparing::is_large;
 
 /// A strip of free space along one direction, in the direction's own places (metres along and across).
 #[derive(Clone, Debug, PartialEq)]
@@ -84,9 +85,9 @@ pub fn widest(strips: &[Strip]) -> f64 {
 /// Corridors along every direction, in the order of the directions: the sure ones are of each those between lines by their
 /// places, and then the ragged ones, the best first.
 pub fn find(evidence: &Evidence, views: &[Turned]) -> Ways {
-    // Of few views one may be done long before another, which then has all threads; but of large ones each thread lays out
+    // Of few views one may be done long before another, which then has all threads; but of a large map each thread lays out
     // rows, for which there is not room enough.
-    let is_shared = views.len() >= evidence.threads || views.iter().any(Turned::is_large);
+    let is_shared = views.len() >= evidence.threads || is_large(&evidence.grid.frame);
     let threads = if is_shared { evidence.threads.div_ceil(views.len().max(1)) } else { evidence.threads };
     let found = map_each(views.len(), evidence.threads, |n| {
         let family = Family::new(evidence, views, &views[n], &[]);

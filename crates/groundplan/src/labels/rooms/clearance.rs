@@ -5,7 +5,7 @@ use super::super::recall::{Key, Recall};
 use super::raster::Raster;
 use super::runs::{Run, Runs};
 use super::squared::square;
-use crate::bands::{each, map_each, worth};
+use crate::bands::{map_each, map_each_in, worth};
 use crate::bits::{WORD, lowest};
 use std::ops::Range;
 
@@ -14,6 +14,8 @@ const WHOLE: usize = 1 << 24;
 /// So many rows at a time, but without threads all where there are no more pixels than this.
 const ROWS: usize = 128;
 const AT_ONCE: usize = 1 << 20;
+/// So many bands of rows are begun together, where they are not kept.
+const SIDE_BY_SIDE: usize = 16;
 /// So many runs of a row are worth a thread's while.
 const TOGETHER: usize = 1 << 11;
 
@@ -118,7 +120,7 @@ fn whole(raster: &Raster, threads: usize) -> Rows {
     let band = if threads <= 1 && raster.len() <= AT_ONCE { height } else { ROWS };
     let bands: Vec<Range<usize>> = (0..height).step_by(band).map(|y| y..(y + band).min(height)).collect();
     let above = above(raster, &bands);
-    let below = if bands.len() == 1 { vec![vec![0; width]] } else { below(raster, &bands) };
+    let below = if bands.len() == 1 { vec![vec![0; width]] } else { below(raster, &bands, &mut vec![0; width]) };
     let made = map_each(bands.len(), threads, |n| {
         let mut band = Vec::with_capacity(bands[n].len() * width);
         heights(raster, &columns, bands[n].clone(), &mut below[n].clone(), &above[n], &mut band);
@@ -155,52 +157,48 @@ fn above(raster: &Raster, bands: &[Range<usize>]) -> Vec<Vec<u32>> {
     above
 }
 
-/// How far it is to what is not free in the row before each band.
-fn below(raster: &Raster, bands: &[Range<usize>]) -> Vec<Vec<u32>> {
-    let mut row = vec![0; raster.width];
+/// How far it is to what is not free in the row before each band; `row` says so of the row before all of them, and then
+/// of the last one.
+fn below(raster: &Raster, bands: &[Range<usize>], row: &mut [u32]) -> Vec<Vec<u32>> {
     let before = |band: &Range<usize>| {
-        let before = row.clone();
-        band.clone().for_each(|y| step(raster, &(0..raster.width), y, &mut row));
+        let before = row.to_vec();
+        band.clone().for_each(|y| step(raster, &(0..raster.width), y, row));
         before
     };
     bands.iter().map(before).collect()
 }
 
-/// Calls `visit` with what is told of the runs of some rows, and then of the rows that follow.
+/// Calls `visit` with what is told of the runs of some rows, and then of the rows that follow. Several bands of rows are
+/// looked at side by side.
 fn band_by_band(raster: &Raster, runs: &[Run], threads: usize, recall: &Recall, mut visit: impl FnMut(Vec<Width>)) {
     let (width, columns) = (raster.width, 0..raster.width);
     let bands: Vec<Range<usize>> = (0..raster.height).step_by(ROWS).map(|y| y..(y + ROWS).min(raster.height)).collect();
     let above = above(raster, &bands);
-    let mut below = vec![0; width];
-    let mut squared = Vec::with_capacity(ROWS * width);
-    let mut rest = runs;
-    for (band, above) in bands.into_iter().zip(&above) {
-        let pixels = band.start * width..band.end * width;
-        let (own, others) = rest.split_at(rest.partition_point(|run| run.pixels().start < pixels.end));
-        rest = others;
-        let mut after = None;
-        // What is free in the rows and how far it is beyond them, and the runs.
-        let key = || {
-            let free = pixels.clone().step_by(WORD).map(|n| raster.free.word(n) & lowest(pixels.end - n));
-            let beyond = below.iter().zip(above).map(|(below, above)| u64::from(*below) << 32 | u64::from(*above));
-            let runs = own.iter().map(|run| ((run.pixels().start - pixels.start) << 32 | run.len()) as u64);
-            free.chain(beyond).chain(runs).fold(Key::default().with(width as u64), Key::with)
-        };
-        let widths = recall.widths.or_find(key, || {
-            squared.clear();
-            let mut below = below.clone();
-            heights(raster, &columns, band.clone(), &mut below, above, &mut squared);
-            let parts = squared.chunks_mut(ROWS.div_ceil(threads.max(1)) * width).collect();
-            each(parts, threads, |part| square(part, width));
-            after = Some(below);
-            let of = |run: &Run| Width::new(&squared[run.pixels().start - pixels.start..][..run.len()]);
-            own.iter().map(of).collect()
+    let mut row = vec![0; width];
+    for (bands, above) in bands.chunks(SIDE_BY_SIDE).zip(above.chunks(SIDE_BY_SIDE)) {
+        let below = below(raster, bands, &mut row);
+        let made = map_each_in(bands.len(), threads, |squared: &mut Vec<u32>, n| {
+            let pixels = bands[n].start * width..bands[n].end * width;
+            let place = |pixel: usize| runs.partition_point(|run| run.pixels().start < pixel);
+            let own = &runs[place(pixels.start)..place(pixels.end)];
+            // What is free in the rows and how far it is beyond them, and the runs.
+            let key = || {
+                let free = pixels.clone().step_by(WORD).map(|n| raster.free.word(n) & lowest(pixels.end - n));
+                let beyond = below[n].iter().zip(&above[n]);
+                let beyond = beyond.map(|(below, above)| u64::from(*below) << 32 | u64::from(*above));
+                let runs = own.iter().map(|run| ((run.pixels().start - pixels.start) << 32 | run.len()) as u64);
+                free.chain(beyond).chain(runs).fold(Key::default().with(width as u64), Key::with)
+            };
+            recall.widths.or_find(key, || {
+                squared.clear();
+                squared.reserve_exact(pixels.len());
+                heights(raster, &columns, bands[n].clone(), &mut below[n].clone(), &above[n], squared);
+                square(squared, width);
+                let of = |run: &Run| Width::new(&squared[run.pixels().start - pixels.start..][..run.len()]);
+                own.iter().map(of).collect()
+            })
         });
-        match after {
-            Some(after) => below = after,
-            None => band.for_each(|y| step(raster, &columns, y, &mut below)),
-        }
-        visit(widths);
+        made.into_iter().for_each(&mut visit);
     }
 }
 
