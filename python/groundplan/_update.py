@@ -193,7 +193,8 @@ def replaced(gradients: dict[str, Any], fresh: dict[str, Any], area: Area) -> di
     first, last = np.searchsorted(y, low), np.searchsorted(y, top)
     beside = first + np.flatnonzero((x[first:last] < left) | (x[first:last] >= right))
     columns, rows = np.concatenate([gradients["pixels"][beside], fresh["pixels"]]).T
-    order = np.lexsort((columns, rows))
+    # Of both they are in order, which a stable sort makes use of.
+    order = np.argsort(rows.astype(np.uint64) << 32 | columns, kind="stable")
 
     def spliced(name: str) -> npt.NDArray[Any]:
         old = gradients[name]

@@ -253,7 +253,7 @@ mod _core {
         let (subdivision, occupancy) = (convert::subdivision(subdivision)?, convert::occupancy(occupancy)?);
         let states = occupancy.states.len().min(occupancy.faces.len());
         convert::demand_subdivision(&subdivision, states, occupancy.edges.len())?;
-        convert::from_walls(py, walls::find_walls(&subdivision, &occupancy, &parameters::read(parameters)?))
+        convert::from_walls(py, walls::find_walls(&subdivision, &occupancy, &parameters::read(parameters)?, 1))
     }
 
     /// II-D, II-E: the dual.

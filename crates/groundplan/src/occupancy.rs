@@ -34,27 +34,24 @@ pub struct Occupancy {
 impl Occupancy {
     /// O(face), from what the pixels add to the faces; nothing of the edges yet.
     pub(crate) fn of_faces(sums: &FaceSums) -> Self {
-        Self {
-            faces: sums.evidence().map(occupied).collect(),
-            unknown: sums.evidence().map(unknown).collect(),
-            free: sums.evidence().map(|s| share(s.free, s.pixels)).collect(),
-            pixels: sums.within.iter().map(|s| s.pixels.unsigned_abs()).collect(),
-            ..Self::states_of(sums)
-        }
+        let pixels: Vec<u64> = sums.within.iter().map(|s| s.pixels.unsigned_abs()).collect();
+        let room = || Vec::with_capacity(pixels.len());
+        let (mut faces, mut unseen, mut free) = (room(), room(), room());
+        let state = |sums: Sums| {
+            let (occupied, unknown) = (occupied(sums), unknown(sums));
+            faces.push(occupied);
+            unseen.push(unknown);
+            free.push(share(sums.free, sums.pixels));
+            state(occupied, unknown)
+        };
+        let states = sums.evidence().map(state).collect();
+        Self { faces, unknown: unseen, free, pixels, states, ..Self::default() }
     }
 
     /// What each face mostly is, and no more.
     pub(crate) fn states_of(sums: &FaceSums) -> Self {
-        let state = |sums: Sums| {
-            if unknown(sums) > 0.5 {
-                State::Unknown
-            } else if occupied(sums) > OCCUPIED {
-                State::Occupied
-            } else {
-                State::Free
-            }
-        };
-        Self { states: sums.evidence().map(state).collect(), ..Self::default() }
+        let states = sums.evidence().map(|sums| state(occupied(sums), unknown(sums))).collect();
+        Self { states, ..Self::default() }
     }
 
     /// And O(edge).
@@ -83,6 +80,16 @@ fn unknown(sums: Sums) -> f64 {
 
 /// A face is occupied when its average occupancy exceeds this and it is not mostly unknown.
 const OCCUPIED: f64 = 0.5;
+
+fn state(occupied: f64, unknown: f64) -> State {
+    if unknown > 0.5 {
+        State::Unknown
+    } else if occupied > OCCUPIED {
+        State::Occupied
+    } else {
+        State::Free
+    }
+}
 
 /// Measures faces and edges, from what the pixels add to the faces and from the edge pixels.
 #[must_use]

@@ -79,7 +79,7 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
     let edges = (0..).zip(&arrangement.line_edges).filter(|(_, edges)| !edges.is_empty());
     let edges: Vec<_> = edges.map(|(line, edges)| (line, edges.start as usize..edges.end as usize)).collect();
     let mut subdivision = Subdivision::of_edges(frame, arrangement, threads);
-    let mut walls = trace_walls(&subdivision, &edges, &occupancy, parameters);
+    let mut walls = trace_walls(&subdivision, &edges, &occupancy, parameters, 1);
     let edge_faces = std::mem::take(&mut subdivision.edge_faces);
     drop(subdivision);
     walls.disparity = disparities(&edge_faces, &occupancy);

@@ -228,7 +228,8 @@ fn labelled(
     divided: Awaited<Divided>,
     sketch: Option<Sketch>,
 ) -> (Divided, Walls, Vec<Label>, Vec<f64>) {
-    let walls = || find_walls(&divided.get().subdivision, &divided.get().occupancy, evidence.parameters);
+    let walls =
+        || find_walls(&divided.get().subdivision, &divided.get().occupancy, evidence.parameters, evidence.threads);
     let division = |adjacency| {
         let Divided { subdivision, occupancy } = divided.get();
         Division { subdivision, occupancy, adjacency }

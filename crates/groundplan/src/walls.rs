@@ -1,6 +1,7 @@
 //! II-D: cogency -> separating and freestanding walls, the abstraction (Fig. 6).
 
 use crate::arrangement::NONE;
+use crate::bands::map_each;
 use crate::grid::{State, tidy};
 use crate::occupancy::Occupancy;
 use crate::parameters::Parameters;
@@ -44,12 +45,14 @@ pub struct Walls {
 
 /// Against the unknown, disparity alone is the frontier of what was explored: a wall has this much on it as well.
 const LEAST_OCCUPANCY_AT_FRONTIER: f64 = 0.2;
+/// So many edges are worth a thread's while.
+const SHARE: usize = 1 << 14;
 
 /// C(edge) = |O(f1) - O(f2)| > t1 or O(edge) > t2.
 #[must_use]
-pub fn find_walls(subdivision: &Subdivision, occupancy: &Occupancy, parameters: &Parameters) -> Walls {
+pub fn find_walls(subdivision: &Subdivision, occupancy: &Occupancy, parameters: &Parameters, threads: usize) -> Walls {
     let disparity = disparities(&subdivision.edge_faces, occupancy);
-    Walls { disparity, ..trace_walls(subdivision, &edges_of_lines(subdivision), occupancy, parameters) }
+    Walls { disparity, ..trace_walls(subdivision, &edges_of_lines(subdivision), occupancy, parameters, threads) }
 }
 
 /// The edges of a line follow one another; those of the border come last.
@@ -78,6 +81,7 @@ pub(crate) fn trace_walls(
     lines: &[(u32, Range<usize>)],
     occupancy: &Occupancy,
     parameters: &Parameters,
+    threads: usize,
 ) -> Walls {
     let edges = 0..subdivision.edge_faces.len();
     let disparity = |e: usize| disparity(subdivision.edge_faces[e], occupancy);
@@ -103,7 +107,8 @@ pub(crate) fn trace_walls(
     };
     let kinds: Vec<Option<WallKind>> = edges.map(kind).collect();
     let min_opening = parameters.walls_min_opening + SAME;
-    let walls = Evidence { subdivision, lines, occupancy, kinds: &kinds, min_opening }.walls();
+    let parts = threads.clamp(1, kinds.len() / SHARE + 1);
+    let walls = Evidence { subdivision, lines, occupancy, kinds: &kinds, min_opening }.walls(parts);
     Walls { walls, cogent, disparity: Vec::new() }
 }
 
@@ -130,10 +135,22 @@ struct Run {
 }
 
 impl Evidence<'_> {
-    fn walls(&self) -> Vec<Wall> {
+    /// Found in so many parts side by side.
+    fn walls(&self, parts: usize) -> Vec<Wall> {
         let met = self.met();
+        let part = |n: usize| &self.lines[self.lines.len() * n / parts..self.lines.len() * (n + 1) / parts];
+        let mut made = map_each(parts, parts, |n| self.walls_on(part(n), &met)).into_iter();
+        let first = made.next().unwrap_or_default();
+        made.fold(first, |mut walls, more| {
+            walls.extend(more);
+            walls
+        })
+    }
+
+    /// Those on some lines.
+    fn walls_on(&self, lines: &[(u32, Range<usize>)], met: &[[u32; 2]]) -> Vec<Wall> {
         let mut walls = Vec::new();
-        for (line, edges) in self.lines.iter().cloned() {
+        for (line, edges) in lines.iter().cloned() {
             let crossings: Vec<Point> = edges
                 .clone()
                 .map(|edge| self.subdivision.edge_vertices[edge][0])

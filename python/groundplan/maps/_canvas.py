@@ -46,8 +46,8 @@ class Canvas:
             self._where = scratch_directory()
             self._reserve(height * width)
         else:
-            # In pages of the usual size. NumPy asks for huge ones: 64 megapixels took 150 ms where a virtual machine had
-            # none that were in use before, and take 30 so.
+            # In pages of the usual size. NumPy asks for huge ones: 64 megapixels took 150 ms where a virtual machine
+            # had none that were in use before, and take 30 so.
             self._array = np.ndarray(self._shape, np.uint8, bytearray(height * width))
 
     def _reserve(self, size: int) -> None:

@@ -137,7 +137,9 @@ fn free_rows(view: &Turned, threads: usize) -> Vec<f64> {
     let row = |n: usize| {
         let low = view.start[1] + n as f64 * view.cell;
         let blocked = view.blocked_in(low, low + view.cell);
-        (0..view.size[0]).step_by(STRIDE).map(|column| 1.0 - blocked.share(blocked.at(column))).sum::<f64>()
+        // Counted together: a sum of shares would wait for each of them.
+        let columns = (0..view.size[0]).step_by(STRIDE);
+        columns.len() as f64 - blocked.share(columns.map(|column| blocked.at(column)).sum())
     };
     let parts = view.size[1].div_ceil(ROWS);
     map_each(parts, threads, |n| (n * ROWS..view.size[1].min((n + 1) * ROWS)).map(row).collect::<Vec<_>>()).concat()
