@@ -35,7 +35,7 @@ def hall(
     return groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION)
 
 
-@pytest.mark.parametrize("early", [(2.0, 0.0, 4.0), (5.0, 0.0), (0.0, 4.0, 1.5, 3.0)])
+@pytest.mark.parametrize("early", [(2.0, 0.0, 4.0), (5.0, 0.0), (0.8, 0.0), (0.0, 4.0, 1.5, 3.0)])
 def test_aisles_meet_the_way_along_the_wall_before_rows_of_any_length(early: tuple[float, ...]) -> None:
     survey = hall(early)
     kinds = sorted(label["type"] for label in survey.of_kind("junction") if label["type"] != "end")

@@ -32,7 +32,7 @@ const WALL: f64 = 0.3;
 const BAY: f64 = 1.15;
 /// The longest row and what fills the shortest one differ by so much, metres: where rows end alike and are full up to
 /// there, a line is the way's side.
-const APART: f64 = 1.2;
+const APART: f64 = 0.6;
 /// No more than this share of the way is not free.
 const CLEAR: f64 = 0.1;
 

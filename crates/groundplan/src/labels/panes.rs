@@ -1,0 +1,157 @@
+//! Panes of glass in walls: what a lidar sees through one is a fan of rays over no floor of the site, so it is as good as
+//! the wall on both its sides.
+
+use super::corridors::{ASKEW, Strip};
+use super::turned::Turned;
+use crate::ends::{holds, overlap, sorted, wider};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Gaps up to this long, metres, are none in a wall, which goes on beside a pane for so long at least.
+const GAP: f64 = 0.3;
+const WALL: f64 = 0.6;
+/// How long a pane is, metres.
+const LONG: (f64, f64) = (0.6, 20.0);
+/// The floor before a pane, and what is seen right behind it, lie so far from the wall, metres, and are free but for this
+/// share; beside it, right behind the wall, so much is not.
+const NEAR: [f64; 2] = [0.3, 0.8];
+const CLEAR: f64 = 0.25;
+const BEHIND: [f64; 2] = [0.15, 0.45];
+const HIDDEN: f64 = 0.4;
+/// Rays spread: so far behind the wall, metres, there is free ground beside it as well, where between racks there is none.
+const SPREAD: [f64; 2] = [1.0, 3.0];
+const UNSPREAD: f64 = 0.75;
+/// Up to the map's end something stands in no more than this share of the columns: an outer wall would in all.
+const HIT: f64 = 0.15;
+/// A pane bars a way when it lies across so much of its inner part, which is this share less on either side.
+const BARS: f64 = 0.5;
+const MARGIN: f64 = 0.2;
+/// A way ends at a pane when it does so near to it, metres.
+const SLACK: f64 = 0.5;
+
+/// A pane in a wall along a direction, in its places.
+pub struct Pane {
+    along: [f64; 2],
+    across: f64,
+    /// On which of its sides nothing but rays is.
+    outside: usize,
+}
+
+/// A pane that lies across a direction.
+pub struct Across {
+    /// In the direction's places.
+    ends: [[f64; 2]; 2],
+    /// Which way along the direction its outside lies.
+    outside: usize,
+}
+
+impl Across {
+    /// Where it bars a strip, along it.
+    fn bars(&self, strip: &Strip) -> Option<f64> {
+        let [[u, v], [to_u, to_v]] = self.ends;
+        let inner = wider(strip.across, -MARGIN * strip.width());
+        let is_across = overlap(inner, sorted([v, to_v])) >= BARS * strip.width();
+        is_across.then(|| u + (to_u - u) * (strip.middle() - v) / (to_v - v))
+    }
+}
+
+impl Turned {
+    /// Finds the panes in its walls, and has them for walls.
+    pub fn glaze(&mut self) {
+        let panes: Vec<(usize, Range<usize>, usize)> = (0..self.offsets.len()).flat_map(|n| self.panes_in(n)).collect();
+        if panes.is_empty() {
+            return;
+        }
+        let (mut covered, mut touched) = (self.covered.to_vec(), self.touched.to_vec());
+        for (line, columns, _) in &panes {
+            covered[*line].fill(columns.clone());
+            touched[*line].fill(columns.clone());
+        }
+        let of = |(line, columns, outside): (usize, Range<usize>, usize)| Pane {
+            along: [columns.start, columns.end].map(|column| self.along(column)),
+            across: self.offsets[line],
+            outside,
+        };
+        self.panes = Arc::new(panes.into_iter().map(of).collect());
+        (self.covered, self.touched) = (Arc::new(covered), Arc::new(touched));
+    }
+
+    /// The panes in a line: in which columns, and on which side is nothing but rays.
+    fn panes_in(&self, line: usize) -> Vec<(usize, Range<usize>, usize)> {
+        let mut walls = self.covered[line].joined(0..self.size[0], self.columns(GAP));
+        walls.retain(|wall| wall.len() >= self.columns(WALL));
+        let gaps = walls.windows(2).map(|pair| pair[0].end..pair[1].start);
+        let long = self.columns(LONG.0)..=self.columns(LONG.1);
+        let outside = |gap: &Range<usize>| (0..2).find(|&side| self.is_pane(line, gap, side));
+        gaps.filter(|gap| long.contains(&gap.len()))
+            .filter_map(|gap| outside(&gap).map(|side| (line, gap, side)))
+            .collect()
+    }
+
+    /// Columns of so many metres.
+    fn columns(&self, metres: f64) -> usize {
+        (metres / self.cell) as usize
+    }
+
+    /// True when through a gap in a wall nothing but rays is seen on a side.
+    fn is_pane(&self, line: usize, gap: &Range<usize>, side: usize) -> bool {
+        let across = self.offsets[line];
+        let behind = |off: [f64; 2], side: usize| {
+            sorted(off.map(|metres| if side == 0 { across - metres } else { across + metres }))
+        };
+        let blocked = |columns: &Range<usize>, off: [f64; 2], side: usize| {
+            let [low, high] = behind(off, side);
+            self.mean_blocked(columns.clone(), low, high)
+        };
+        let margin = self.columns(GAP);
+        let inner = gap.start + margin..gap.end - margin.min(gap.len() - margin - 1);
+        let around = gap.start.saturating_sub(self.columns(WALL))..(gap.end + self.columns(WALL)).min(self.size[0]);
+        let beside = [around.start..gap.start - margin, gap.end + margin..around.end];
+        let [low, top] = [self.start[1], self.start[1] + self.size[1] as f64 * self.cell];
+        let end = if side == 0 { across - low } else { top - across };
+        [side, 1 - side].into_iter().all(|side| blocked(&inner, NEAR, side) <= CLEAR)
+            && beside.iter().all(|columns| blocked(columns, BEHIND, side) >= HIDDEN)
+            && beside.iter().all(|columns| blocked(columns, SPREAD, side) <= UNSPREAD)
+            && {
+                let [low, high] = behind([NEAR[0], end.max(NEAR[1])], side);
+                self.share_touched(around, low, high) <= HIT
+            }
+    }
+}
+
+/// Tells each view of the panes of others that lie across it.
+pub fn share(views: &mut [Turned]) {
+    let across = |own: &Turned| -> Vec<Across> {
+        let others = views.iter().filter(|other| libm::sin(own.angle - other.angle).abs() >= ASKEW);
+        let panes = others.flat_map(|other| other.panes.iter().map(move |pane| (other, pane)));
+        let of = |(other, pane): (&Turned, &Pane)| {
+            let to_own = |u: f64, v: f64| own.place(other.to_map([u, v]));
+            let beyond = pane.across + if pane.outside == 0 { -1.0 } else { 1.0 };
+            let [start, outside] = [pane.across, beyond].map(|v| to_own(pane.along[0], v)[0]);
+            Across { ends: pane.along.map(|u| to_own(u, pane.across)), outside: usize::from(outside > start) }
+        };
+        panes.map(of).collect()
+    };
+    let all: Vec<_> = views.iter().map(across).collect();
+    views.iter_mut().zip(all).for_each(|(view, across)| view.across = Arc::new(across));
+}
+
+/// Where a pane bars the way beyond one of a strip's ends, no farther off than that.
+pub fn beyond(view: &Turned, strip: &Strip, side: usize, look: f64) -> Option<f64> {
+    let end = strip.along[side];
+    let reach = if side == 0 { [end - look, end + SLACK] } else { [end - SLACK, end + look] };
+    let places = view.across.iter().filter(|pane| pane.outside == side).filter_map(|pane| pane.bars(strip));
+    places.filter(|place| holds(reach, *place)).min_by(|a, b| (a - end).abs().total_cmp(&(b - end).abs()))
+}
+
+/// Ways without what of them lies behind panes.
+pub fn cut(views: &[Turned], ways: &mut [Strip]) {
+    for way in ways {
+        for pane in views[way.direction].across.iter() {
+            if let Some(place) = pane.bars(way).filter(|place| holds(way.along, *place)) {
+                way.along[pane.outside] = place;
+                way.unseen[pane.outside] = false;
+            }
+        }
+    }
+}

@@ -1,0 +1,52 @@
+"""Through glass a lidar sees no wall but a fan of rays, and where there is no floor there is no way."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import groundplan
+
+RESOLUTION = 0.05
+#: Metres: the hall, and around it.
+LENGTH, DEPTH, AROUND = 30.0, 21.0, 9.0
+
+
+def hall(glass: tuple[float, float] | None, *, is_aisle: bool = False) -> groundplan.Survey:
+    """Four rows of racks 1.5 m deep, 3 m from all walls and from one another; the east wall is partly of glass.
+
+    What is seen through it spreads on both sides and ends at the unknown. Or it leads on between racks of which little was
+    seen.
+    """
+    y, x = np.mgrid[-AROUND : DEPTH + AROUND : RESOLUTION, -AROUND : LENGTH + AROUND : RESOLUTION]
+    picture = np.full(x.shape, 205, dtype=np.uint8)
+    picture[(x > -0.1) & (x < LENGTH + 0.1) & (y > -0.1) & (y < DEPTH + 0.1)] = 0
+    picture[(x > 0) & (x < LENGTH) & (y > 0) & (y < DEPTH)] = 254
+    for row in range(4):
+        low = 3.0 + 4.5 * row
+        picture[(x > 3) & (x < LENGTH - 3) & (y > low) & (y < low + 1.5)] = 0
+    if glass is not None:
+        draw = np.random.default_rng(7)
+        off, reach = x - LENGTH, draw.uniform(4.0, 8.0, 400)
+        spread = 0.0 if is_aisle else 0.8
+        low, high = glass[0] - spread * off, glass[1] + spread * off
+        rays = reach[(200 * np.arctan2(y - sum(glass) / 2, off + 1.0) / np.pi).astype(int) % 400]
+        picture[(off >= 0) & (off < rays) & (y > low) & (y < high)] = 254
+    return groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION, origin=(-AROUND, -AROUND))
+
+
+def meetings(survey: groundplan.Survey) -> list[tuple[str, float, float]]:
+    """What the ways make where they meet or end, and where, to half a metre."""
+    found = survey.of_kind("junction")
+    return sorted((label["type"], *(round(2 * place) / 2 for place in label["at"])) for label in found)
+
+
+@pytest.mark.parametrize("glass", [(4.0, 10.0), (8.5, 12.0), (1.5, 19.0)])
+def test_a_wall_of_glass_is_a_wall(glass: tuple[float, float]) -> None:
+    assert meetings(hall(glass)) == meetings(hall(None))
+
+
+def test_between_racks_of_which_little_was_seen_a_way_leads_on() -> None:
+    # In line with the third aisle.
+    survey = hall((9.0, 12.0), is_aisle=True)
+    assert max(way["axis"][end][0] for way in survey.of_kind("corridor") for end in (0, 1)) > LENGTH + 2
