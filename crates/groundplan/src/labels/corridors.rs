@@ -9,7 +9,7 @@ use super::beside::{Beside, placed};
 use super::family::Family;
 use super::ragged::{self, Ways};
 use super::turned::Turned;
-use super::{Evidence, mouths};
+use super::{Evidence, mouths, panes};
 use crate::bands::map_each;
 use crate::ends::holds;
 use crate::sparing::is_large;
@@ -131,6 +131,9 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Ways {
     strips.sort_by_key(|strip| strip.direction);
     for ways in [&mut others.over, &mut others.cut, &mut others.on] {
         ways.retain(|way| !is_askew_in(views, way, &strips, &placed));
+    }
+    for ways in [&mut strips, &mut others.over, &mut others.cut, &mut others.on] {
+        panes::cut(views, ways);
     }
     Ways { sure: strips, ..others }
 }

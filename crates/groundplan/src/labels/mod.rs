@@ -35,6 +35,7 @@ mod narrowed;
 mod near;
 mod onward;
 mod outline;
+mod panes;
 mod paper;
 mod passing;
 mod patches;

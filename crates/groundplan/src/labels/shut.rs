@@ -2,6 +2,7 @@
 
 use super::barriers;
 use super::corridors::Strip;
+use super::panes;
 use super::turned::Turned;
 use std::ops::Range;
 
@@ -46,6 +47,9 @@ pub fn sign(side: usize) -> f64 {
 
 /// Where what closes a strip so far beyond one of its ends begins.
 pub fn closed(view: &Turned, strip: &Strip, side: usize, look: f64) -> Option<f64> {
+    if let Some(pane) = panes::beyond(view, strip, side, look) {
+        return Some(pane);
+    }
     let sign = sign(side);
     let cells = |metres: f64| (metres / view.cell).ceil() as i64;
     let last = view.size[0] as i64 - 1;

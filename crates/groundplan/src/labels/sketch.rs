@@ -18,6 +18,7 @@ use super::legs;
 use super::look::Look;
 use super::meeting::Meeting;
 use super::narrowed;
+use super::panes;
 use super::racks;
 use super::ragged::{self, Ways};
 use super::rooms::{Bar, Space};
@@ -80,8 +81,10 @@ impl<'s, 'a> Sight<'a, Later<'s, Free>> {
         let Glance { look, mut views, on_legs } = glance.get();
         each(views.iter_mut().collect(), evidence.threads, |view: &mut Turned| {
             view.line(evidence);
+            view.glaze();
             view.recur(&evidence.shared_out());
         });
+        panes::share(&mut views);
         Self { look, views, on_legs, free }
     }
 }
@@ -105,8 +108,10 @@ impl<'a> Sight<'a, Free> {
         let Self { look, views, .. } = &mut self;
         each(views.iter_mut().collect(), evidence.threads, |view: &mut Turned| {
             view.see(&evidence.scene().shared_out(), look);
+            view.glaze();
             view.recur(&evidence.shared_out());
         });
+        panes::share(views);
         self
     }
 }
@@ -141,14 +146,16 @@ fn planned(evidence: &Evidence, look: &Look, views: Vec<Turned>, on_legs: &[Row]
     if left == on_legs {
         return (views, plan);
     }
-    let views = map_each(views.len(), evidence.threads, |direction| {
+    let mut views = map_each(views.len(), evidence.threads, |direction| {
         let scene = evidence.scene().shared_out();
         let mut view = Turned::new(&scene, direction, &left);
         view.line(evidence);
         view.see(&scene, look);
+        view.glaze();
         view.recur(&evidence.shared_out());
         view
     });
+    panes::share(&mut views);
     let plan = Plan::of(evidence, look, &views, &left);
     (views, plan)
 }

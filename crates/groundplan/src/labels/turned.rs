@@ -3,6 +3,7 @@
 
 use super::grounds::Grounds;
 use super::look::{LANES, Look};
+use super::panes::{Across, Pane};
 use super::recall::Key;
 use super::rows::Row;
 use super::summed::Summed;
@@ -43,6 +44,10 @@ pub struct Turned {
     pub covered: Arc<Vec<Bits>>,
     /// The same for what only touches it: posts, and the ends of what lies across.
     pub touched: Arc<Vec<Bits>>,
+    /// Where walls along its lines are of glass.
+    pub panes: Arc<Vec<Pane>>,
+    /// And those of others that cross it.
+    pub across: Arc<Vec<Across>>,
     /// What is told of each row of cells.
     pub rows: Arc<Vec<Told>>,
     /// Racks that stand on legs, whose ground is taken.
@@ -80,6 +85,8 @@ impl Turned {
             offsets: Arc::default(),
             covered: Arc::default(),
             touched: Arc::default(),
+            panes: Arc::default(),
+            across: Arc::default(),
             rows: Arc::default(),
             grounds: Grounds::default(),
             keys: (Key::default(), Arc::default()),
@@ -124,6 +131,8 @@ impl Turned {
             offsets: Arc::clone(&self.offsets),
             covered: Arc::clone(&self.covered),
             touched: Arc::clone(&self.touched),
+            panes: Arc::clone(&self.panes),
+            across: Arc::clone(&self.across),
             rows: Arc::clone(&self.rows),
             grounds: Grounds::default(),
             keys: (self.keys.0, Arc::clone(&self.keys.1)),
