@@ -15,8 +15,8 @@ LENGTH, DEPTH, AROUND = 30.0, 21.0, 9.0
 def hall(glass: tuple[float, float] | None, *, is_aisle: bool = False) -> groundplan.Survey:
     """Four rows of racks 1.5 m deep, 3 m from all walls and from one another; the east wall is partly of glass.
 
-    What is seen through it spreads on both sides and ends at the unknown. Or it leads on between racks of which little was
-    seen.
+    What is seen through it spreads on both sides and ends at the unknown. Or it leads on between racks of which little
+    was seen.
     """
     y, x = np.mgrid[-AROUND : DEPTH + AROUND : RESOLUTION, -AROUND : LENGTH + AROUND : RESOLUTION]
     picture = np.full(x.shape, 205, dtype=np.uint8)
