@@ -3,6 +3,7 @@
 
 use super::corridors::{ASKEW, Strip};
 use super::turned::Turned;
+use crate::bits::Bits;
 use crate::ends::{holds, overlap, sorted, wider};
 use std::ops::Range;
 use std::sync::Arc;
@@ -58,7 +59,16 @@ impl Across {
 impl Turned {
     /// Finds the panes in its walls, and has them for walls.
     pub fn glaze(&mut self) {
-        let panes: Vec<(usize, Range<usize>, usize)> = (0..self.offsets.len()).flat_map(|n| self.panes_in(n)).collect();
+        let mut panes = Vec::new();
+        for outside in [0, 1] {
+            let count = self.offsets.len();
+            // In which columns there is another line beyond: mostly there is, and nothing more is to be asked.
+            let mut beyond = Bits::new(self.size[0]);
+            for line in (0..count).map(|n| if outside == 0 { n } else { count - 1 - n }) {
+                panes.extend(self.panes_in(line, outside, &beyond).into_iter().map(|gap| (line, gap, outside)));
+                beyond |= &self.covered[line];
+            }
+        }
         if panes.is_empty() {
             return;
         }
@@ -76,16 +86,14 @@ impl Turned {
         (self.covered, self.touched) = (Arc::new(covered), Arc::new(touched));
     }
 
-    /// The panes in a line: in which columns, and on which side is nothing but rays.
-    fn panes_in(&self, line: usize) -> Vec<(usize, Range<usize>, usize)> {
+    /// In which columns the panes in a line lie through which nothing but rays is seen on a side.
+    fn panes_in(&self, line: usize, outside: usize, beyond: &Bits) -> Vec<Range<usize>> {
         let mut walls = self.covered[line].joined(0..self.size[0], self.columns(GAP));
         walls.retain(|wall| wall.len() >= self.columns(WALL));
-        let gaps = walls.windows(2).map(|pair| pair[0].end..pair[1].start);
         let long = self.columns(LONG.0)..=self.columns(LONG.1);
-        let outside = |gap: &Range<usize>| (0..2).find(|&side| self.is_pane(line, gap, side));
-        gaps.filter(|gap| long.contains(&gap.len()))
-            .filter_map(|gap| outside(&gap).map(|side| (line, gap, side)))
-            .collect()
+        let is_outermost = |gap: &Range<usize>| beyond.count(gap.clone()) as f64 <= HIT * gap.len() as f64;
+        let gaps = walls.windows(2).map(|pair| pair[0].end..pair[1].start).filter(|gap| long.contains(&gap.len()));
+        gaps.filter(is_outermost).filter(|gap| self.is_pane(line, gap, outside)).collect()
     }
 
     /// Columns of so many metres.
