@@ -50,3 +50,16 @@ def test_between_racks_of_which_little_was_seen_a_way_leads_on() -> None:
     # In line with the third aisle.
     survey = hall((9.0, 12.0), is_aisle=True)
     assert max(way["axis"][end][0] for way in survey.of_kind("corridor") for end in (0, 1)) > LENGTH + 2
+
+
+def test_a_corridor_behind_a_door_is_none_of_glass() -> None:
+    y, x = np.mgrid[-12.0:12.0:RESOLUTION, -16.0:34.0:RESOLUTION]
+    picture = np.full(x.shape, 205, dtype=np.uint8)
+    picture[(x > -14.1) & (x < 0) & (abs(y) < 10.1)] = 0
+    picture[(x > -14) & (x < -0.1) & (abs(y) < 10)] = 254
+    # A door of 2 m, and behind it 20 m of a corridor of 3.4 m, whose end was not seen.
+    picture[(x > -0.2) & (x < 20) & (abs(y) < 1)] = 254
+    picture[(x > 0) & (x < 20) & (abs(y) < np.minimum(1 + 0.9 * x, 1.7))] = 254
+    picture[(x > 0.3) & (x < 20) & (abs(abs(y) - 1.8) < 0.1)] = 0
+    survey = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION, origin=(-16, -12))
+    assert [[round(x) for x, _ in way["axis"]] for way in survey.of_kind("corridor")] == [[0, 20]]

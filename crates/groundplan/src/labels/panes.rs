@@ -2,9 +2,10 @@
 //! the wall on both its sides.
 
 use super::corridors::{ASKEW, Strip};
+use super::shut;
 use super::turned::Turned;
 use crate::bits::Bits;
-use crate::ends::{holds, overlap, sorted, wider};
+use crate::ends::{holds, overlap, sorted};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -22,11 +23,12 @@ const HIDDEN: f64 = 0.4;
 /// Rays spread: so far behind the wall, metres, there is free ground beside it as well, where between racks there is none.
 const SPREAD: [f64; 2] = [1.0, 3.0];
 const UNSPREAD: f64 = 0.75;
-/// Up to the map's end something stands in no more than this share of the columns: an outer wall would in all.
+/// Something stands in no more than this share of the columns behind a pane up to the map's end, where an outer wall would in
+/// all of them; nor in more of the rows of cells so far behind it, metres, and beside that, as the walls of a way would.
 const HIT: f64 = 0.15;
-/// A pane bars a way when it lies across so much of its inner part, which is this share less on either side.
+const FAR: f64 = 6.0;
+/// A pane bars a way when it lies across so much of its width, what stands at its sides left out.
 const BARS: f64 = 0.5;
-const MARGIN: f64 = 0.2;
 /// A way ends at a pane when it does so near to it, metres.
 const SLACK: f64 = 0.5;
 
@@ -50,8 +52,7 @@ impl Across {
     /// Where it bars a strip, along it.
     fn bars(&self, strip: &Strip) -> Option<f64> {
         let [[u, v], [to_u, to_v]] = self.ends;
-        let inner = wider(strip.across, -MARGIN * strip.width());
-        let is_across = overlap(inner, sorted([v, to_v])) >= BARS * strip.width();
+        let is_across = overlap(shut::inner(strip), sorted([v, to_v])) >= BARS * strip.width();
         is_across.then(|| u + (to_u - u) * (strip.middle() - v) / (to_v - v))
     }
 }
@@ -98,7 +99,7 @@ impl Turned {
 
     /// Columns of so many metres.
     fn columns(&self, metres: f64) -> usize {
-        (metres / self.cell) as usize
+        (metres / self.cell).round() as usize
     }
 
     /// True when through a gap in a wall nothing but rays is seen on a side.
@@ -112,9 +113,16 @@ impl Turned {
             self.mean_blocked(columns.clone(), low, high)
         };
         let margin = self.columns(GAP);
-        let inner = gap.start + margin..gap.end - margin.min(gap.len() - margin - 1);
-        let around = gap.start.saturating_sub(self.columns(WALL))..(gap.end + self.columns(WALL)).min(self.size[0]);
-        let beside = [around.start..gap.start - margin, gap.end + margin..around.end];
+        let inner = gap.start + margin..gap.end - margin.min(gap.len().saturating_sub(margin + 1));
+        let around =
+            |off: f64| gap.start.saturating_sub(self.columns(off))..(gap.end + self.columns(off)).min(self.size[0]);
+        let [near, far] = [WALL, SPREAD[1]].map(around);
+        let beside = [near.start..gap.start - margin, gap.end + margin..near.end];
+        let is_hit = |row: &usize| {
+            let [low, high] = behind([0, 1].map(|n| NEAR[0] + (row + n) as f64 * self.cell), side);
+            self.share_touched(far.clone(), low, high) > 0.0
+        };
+        let rows = self.columns(FAR);
         let [low, top] = [self.start[1], self.start[1] + self.size[1] as f64 * self.cell];
         let end = if side == 0 { across - low } else { top - across };
         [side, 1 - side].into_iter().all(|side| blocked(&inner, NEAR, side) <= CLEAR)
@@ -122,8 +130,9 @@ impl Turned {
             && beside.iter().all(|columns| blocked(columns, SPREAD, side) <= UNSPREAD)
             && {
                 let [low, high] = behind([NEAR[0], end.max(NEAR[1])], side);
-                self.share_touched(around, low, high) <= HIT
+                self.share_touched(near, low, high) <= HIT
             }
+            && (0..rows).filter(is_hit).count() as f64 <= HIT * rows as f64
     }
 }
 
@@ -152,9 +161,9 @@ pub fn beyond(view: &Turned, strip: &Strip, side: usize, look: f64) -> Option<f6
     places.filter(|place| holds(reach, *place)).min_by(|a, b| (a - end).abs().total_cmp(&(b - end).abs()))
 }
 
-/// Ways without what of them lies behind panes.
-pub fn cut(views: &[Turned], ways: &mut [Strip]) {
-    for way in ways {
+/// Ways without what of them lies behind panes, where something is left.
+pub fn cut(views: &[Turned], ways: &mut Vec<Strip>) {
+    for way in ways.iter_mut() {
         for pane in views[way.direction].across.iter() {
             if let Some(place) = pane.bars(way).filter(|place| holds(way.along, *place)) {
                 way.along[pane.outside] = place;
@@ -162,4 +171,5 @@ pub fn cut(views: &[Turned], ways: &mut [Strip]) {
             }
         }
     }
+    ways.retain(|way| way.along[0] < way.along[1]);
 }

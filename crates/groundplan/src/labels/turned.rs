@@ -114,6 +114,7 @@ impl Turned {
         self.cells = Cells::default();
         (self.rows, self.offsets, self.keys.1) = (Arc::default(), Arc::default(), Arc::default());
         (self.covered, self.touched) = (Arc::default(), Arc::default());
+        (self.panes, self.across) = (Arc::default(), Arc::default());
     }
 
     /// True when the cells are too many for sums of all rows.
