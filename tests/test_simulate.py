@@ -20,7 +20,7 @@ from groundplan._errors import FormatError, ParameterError
 from groundplan.maps._map import FREE, OCCUPIED, UNKNOWN
 from groundplan.simulate import Simulated, WarehouseOptions, warehouse
 from groundplan.simulate._drift import Drift
-from groundplan.simulate._drive import explored, route
+from groundplan.simulate._drive import connected, explored, route
 from groundplan.simulate._lidar import Pose, cast, grid_map
 from groundplan.simulate._plan import Corridor, GroundPlan, Point, network
 from groundplan.simulate._raster import city_block, rasterise
@@ -236,6 +236,17 @@ def test_network_finds_nodes_arms_and_roads() -> None:
     kinds = {tuple(round(v) for v in node.at): node.kind for node in net.nodes}
     assert kinds == {(0, 0): "L", (10, 0): "X", (20, 0): "end", (0, 10): "end", (10, -10): "end", (10, 10): "end"}
     assert sorted(net.length(road) for road in net.roads) == [10, 10, 10, 10, 10]
+
+
+@pytest.mark.parametrize("gap", [0.5, 8.0])
+@pytest.mark.parametrize("side", ["east", "north"])
+def test_halls_are_one_network_through_a_closed_side_too(side: str, gap: float) -> None:
+    # A passage from an aisle's end is in line with the aisle and may be shorter than a crossing is wide.
+    for seed in range(5):
+        options = WarehouseOptions(halls=2, gap=gap, closed_sides=(side,))
+        net = network(warehouse_plan(options, np.random.default_rng(seed)).corridors)
+        assert connected(net.roads)
+        assert {n for road in net.roads for n in road} == set(range(len(net.nodes)))
 
 
 def test_network_does_not_count_a_stub_as_an_arm() -> None:

@@ -39,7 +39,7 @@ def explored(net: Network, partial: float, random: np.random.Generator) -> tuple
                     break
                 continue
             rest = [r for r in driven if r != road]
-            if road in driven and _connected(rest):
+            if road in driven and connected(rest):
                 driven = rest
                 dropped.append(road)
                 left += net.length(road)
@@ -57,7 +57,8 @@ def _middle(net: Network, road: Road) -> Point:
     return (ax + bx) / 2, (ay + by) / 2
 
 
-def _connected(roads: list[Road]) -> bool:
+def connected(roads: list[Road]) -> bool:
+    """Is there a way between any two of the roads?"""
     if not roads:
         return False
     seen, todo = {roads[0][0]}, [roads[0][0]]

@@ -213,7 +213,9 @@ def network(corridors: list[Corridor]) -> Network:
                 visit(at, (i, j))
     for k, corridor in enumerate(corridors):
         for end in (corridor.a, corridor.b):
-            if all(math.dist(places[n], end) > _reach(corridors, members[n], k) for n in stops[k]):
+            # Where another begins in line, as a short passage from an aisle's end, the two would else not be joined.
+            on = any(math.dist(end, other) < _APART for c in corridors if c is not corridor for other in (c.a, c.b))
+            if on or all(math.dist(places[n], end) > _reach(corridors, members[n], k) for n in stops[k]):
                 visit(end, (k,))
 
     nodes = []
