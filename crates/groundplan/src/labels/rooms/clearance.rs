@@ -4,7 +4,7 @@
 use super::super::recall::{Key, Recall};
 use super::raster::Raster;
 use super::runs::{Run, Runs};
-use super::squared::square;
+use super::squared::Squared;
 use crate::bands::{map_each, map_each_in, worth};
 use crate::bits::{WORD, lowest};
 use std::ops::Range;
@@ -62,11 +62,11 @@ impl Clearance {
         recall: &Recall,
         mut visit: impl FnMut(usize, Width),
     ) {
-        let width = raster.width;
         if let Some(rows) = &self.0 {
+            let (width, roots) = (raster.width, Roots::new());
             let along = |run: &Run| {
                 let start = run.pixels().start;
-                Width::new(&rows.row(start / width)[start % width..][..run.len()])
+                Width::new(&rows.row(start / width)[start % width..][..run.len()], &roots)
             };
             let parts: Vec<&[Run]> = runs.all.chunks(TOGETHER).collect();
             let widths = map_each(parts.len(), threads, |n| parts[n].iter().map(along).collect::<Vec<_>>());
@@ -94,19 +94,38 @@ pub struct Width {
 }
 
 impl Width {
-    fn new(squared: &[u32]) -> Self {
+    fn new(squared: &[u32], roots: &Roots) -> Self {
         let most = squared.iter().copied().max().unwrap_or(0);
         let at = squared.iter().position(|&squared| squared == most).unwrap_or(0) as u32;
-        Self { most, at, sum: distances(squared) }
+        Self { most, at, sum: roots.sum(squared, most) }
     }
 }
 
-/// The sum of the roots, several side by side.
-fn distances(squared: &[u32]) -> f64 {
+/// The roots of small numbers, which most squared clearances are: to look one up takes less than to find it.
+struct Roots(Box<[f64; ROOTS]>);
+
+const ROOTS: usize = 1 << 12;
+
+impl Roots {
+    fn new() -> Self {
+        Self(Box::new(std::array::from_fn(|squared| (squared as f64).sqrt())))
+    }
+
+    /// The sum of the roots, several side by side, of what is no greater than the most.
+    fn sum(&self, squared: &[u32], most: u32) -> f64 {
+        if (most as usize) < ROOTS {
+            sum(squared, |squared| self.0[squared as usize % ROOTS])
+        } else {
+            sum(squared, |squared| f64::from(squared as i32).sqrt())
+        }
+    }
+}
+
+fn sum(squared: &[u32], root: impl Fn(u32) -> f64) -> f64 {
     let parts = squared.chunks_exact(4);
-    let rest: f64 = parts.remainder().iter().map(|&squared| f64::from(squared).sqrt()).sum();
+    let rest: f64 = parts.remainder().iter().map(|&squared| root(squared)).sum();
     let add = |mut sums: [f64; 4], part: &[u32]| {
-        sums.iter_mut().zip(part).for_each(|(sum, &squared)| *sum += f64::from(squared as i32).sqrt());
+        sums.iter_mut().zip(part).for_each(|(sum, &squared)| *sum += root(squared));
         sums
     };
     parts.fold([0.0; 4], add).iter().sum::<f64>() + rest
@@ -118,13 +137,12 @@ fn whole(raster: &Raster, threads: usize) -> Rows {
     let threads = worth(raster.len(), threads);
     // What bears on a band from beyond takes a pass of its own; but a band stays in the processor's cache.
     let band = if threads <= 1 && raster.len() <= AT_ONCE { height } else { ROWS };
-    let bands: Vec<Range<usize>> = (0..height).step_by(band).map(|y| y..(y + band).min(height)).collect();
-    let above = above(raster, &bands);
+    let bands = in_bands(0..height, band);
+    let above = above(raster, &columns, &bands);
     let below = if bands.len() == 1 { vec![vec![0; width]] } else { below(raster, &bands, &mut vec![0; width]) };
     let made = map_each(bands.len(), threads, |n| {
         let mut band = Vec::with_capacity(bands[n].len() * width);
-        heights(raster, &columns, bands[n].clone(), &mut below[n].clone(), &above[n], &mut band);
-        square(&mut band, width);
+        clearances(raster, &columns, bands[n].clone(), &mut below[n].clone(), &above[n], &mut band);
         band
     });
     Rows { width, height, band, bands: made }
@@ -134,23 +152,29 @@ fn whole(raster: &Raster, threads: usize) -> Rows {
 /// room of others.
 pub fn within(raster: &Raster, [columns, rows]: [Range<usize>; 2], mut room: Vec<u32>) -> Rows {
     let (width, height) = (columns.len(), rows.len());
-    let border = vec![0; width];
     room.clear();
     room.reserve_exact(height * width);
-    room.extend_from_slice(&border);
-    heights(raster, &columns, rows.start + 1..rows.end - 1, &mut border.clone(), &border, &mut room);
-    square(&mut room[width..], width);
-    room.extend_from_slice(&border);
+    room.resize(width, 0);
+    let bands = in_bands(rows.start + 1..rows.end - 1, ROWS);
+    let mut below = vec![0; width];
+    for (band, above) in bands.iter().zip(above(raster, &columns, &bands)) {
+        clearances(raster, &columns, band.clone(), &mut below, &above, &mut room);
+    }
+    room.resize(height * width, 0);
     Rows { width, height, band: height, bands: vec![room] }
 }
 
-/// How far it is to what is not free in the row that follows each band.
-fn above(raster: &Raster, bands: &[Range<usize>]) -> Vec<Vec<u32>> {
-    let mut row = vec![0; raster.width];
+fn in_bands(rows: Range<usize>, band: usize) -> Vec<Range<usize>> {
+    rows.clone().step_by(band).map(|y| y..(y + band).min(rows.end)).collect()
+}
+
+/// How far it is to what is not free within columns, in the row that follows each band.
+fn above(raster: &Raster, columns: &Range<usize>, bands: &[Range<usize>]) -> Vec<Vec<u16>> {
+    let mut row = vec![0; columns.len()];
     let mut above = vec![row.clone(); bands.len()];
     for (n, band) in bands.iter().enumerate().skip(1).rev() {
         for y in band.clone().rev() {
-            step(raster, &(0..raster.width), y, &mut row);
+            step(raster, columns, y, &mut row);
         }
         above[n - 1].clone_from(&row);
     }
@@ -159,7 +183,7 @@ fn above(raster: &Raster, bands: &[Range<usize>]) -> Vec<Vec<u32>> {
 
 /// How far it is to what is not free in the row before each band; `row` says so of the row before all of them, and then
 /// of the last one.
-fn below(raster: &Raster, bands: &[Range<usize>], row: &mut [u32]) -> Vec<Vec<u32>> {
+fn below(raster: &Raster, bands: &[Range<usize>], row: &mut [u16]) -> Vec<Vec<u16>> {
     let before = |band: &Range<usize>| {
         let before = row.to_vec();
         band.clone().for_each(|y| step(raster, &(0..raster.width), y, row));
@@ -172,9 +196,9 @@ fn below(raster: &Raster, bands: &[Range<usize>], row: &mut [u32]) -> Vec<Vec<u3
 /// looked at side by side.
 fn band_by_band(raster: &Raster, runs: &[Run], threads: usize, recall: &Recall, mut visit: impl FnMut(Vec<Width>)) {
     let (width, columns) = (raster.width, 0..raster.width);
-    let bands: Vec<Range<usize>> = (0..raster.height).step_by(ROWS).map(|y| y..(y + ROWS).min(raster.height)).collect();
-    let above = above(raster, &bands);
-    let mut row = vec![0; width];
+    let bands = in_bands(0..raster.height, ROWS);
+    let above = above(raster, &columns, &bands);
+    let (mut row, roots) = (vec![0; width], Roots::new());
     for (bands, above) in bands.chunks(SIDE_BY_SIDE).zip(above.chunks(SIDE_BY_SIDE)) {
         let below = below(raster, bands, &mut row);
         let made = map_each_in(bands.len(), threads, |squared: &mut Vec<u32>, n| {
@@ -192,9 +216,8 @@ fn band_by_band(raster: &Raster, runs: &[Run], threads: usize, recall: &Recall, 
             recall.widths.or_find(key, || {
                 squared.clear();
                 squared.reserve_exact(pixels.len());
-                heights(raster, &columns, bands[n].clone(), &mut below[n].clone(), &above[n], squared);
-                square(squared, width);
-                let of = |run: &Run| Width::new(&squared[run.pixels().start - pixels.start..][..run.len()]);
+                clearances(raster, &columns, bands[n].clone(), &mut below[n].clone(), &above[n], squared);
+                let of = |run: &Run| Width::new(&squared[run.pixels().start - pixels.start..][..run.len()], &roots);
                 own.iter().map(of).collect()
             })
         });
@@ -202,11 +225,12 @@ fn band_by_band(raster: &Raster, runs: &[Run], threads: usize, recall: &Recall, 
     }
 }
 
-/// From how far it is to what is not free in the row before to how far it is in this one.
-fn step(raster: &Raster, columns: &Range<usize>, y: usize, row: &mut [u32]) {
+/// From how far it is to what is not free in the row before to how far it is in this one: in 16 bits, of which many are
+/// looked at together, and where nothing is nearer than these hold, it is as far as they do.
+fn step(raster: &Raster, columns: &Range<usize>, y: usize, row: &mut [u16]) {
     let from = y * raster.width + columns.start;
     for height in row.iter_mut() {
-        *height += 1;
+        *height = height.saturating_add(1);
     }
     for run in raster.free.runs(from..from + columns.len(), false) {
         row[run.start - from..run.end - from].fill(0);
@@ -215,25 +239,29 @@ fn step(raster: &Raster, columns: &Range<usize>, y: usize, row: &mut [u32]) {
     row[columns.len() - 1] = 0;
 }
 
-/// How far it is to what is not free within each column; `below` says so of the row before and then of the last one,
-/// `above` of the one that follows. They are put to what is there.
-fn heights(
+/// The squared clearances of rows, put to what is there. How far it is to what is not free within each column `below` says
+/// of the row before and then of the last one, `above` of the one that follows.
+fn clearances(
     raster: &Raster,
     columns: &Range<usize>,
     rows: Range<usize>,
-    below: &mut [u32],
-    above: &[u32],
+    below: &mut [u16],
+    above: &[u16],
     all: &mut Vec<u32>,
 ) {
-    let (width, first) = (columns.len(), all.len());
-    for y in rows.clone() {
-        step(raster, columns, y, below);
-        all.extend_from_slice(below);
+    let width = columns.len();
+    // From the last row to the first how far it is upwards, and then back again.
+    let mut upwards = Vec::with_capacity(rows.len() * width);
+    let mut row = above.to_vec();
+    for y in rows.rev() {
+        step(raster, columns, y, &mut row);
+        upwards.extend_from_slice(&row);
     }
-    let heights = &mut all[first..];
-    for n in (0..rows.len()).rev() {
-        let (row, next) = heights[n * width..].split_at_mut(width);
-        let above = if n + 1 < rows.len() { &next[..width] } else { above };
-        row.iter_mut().zip(above).for_each(|(to, above)| *to = (*to).min(*above + 1));
+    let mut squared = Squared::new(width);
+    for upwards in upwards.chunks(width).rev() {
+        for (below, above) in below.iter_mut().zip(upwards) {
+            *below = below.saturating_add(1).min(*above);
+        }
+        squared.row(below, all);
     }
 }

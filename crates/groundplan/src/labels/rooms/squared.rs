@@ -6,67 +6,76 @@
 const LANES: usize = 32;
 const STEPS: usize = 4;
 const FARTHEST: usize = 46 * STEPS;
+/// The square of a greater height does not fit.
+const HIGHEST: u16 = 181;
 
-/// From the heights of rows to the squared distances.
-pub fn square(rows: &mut [u32], width: usize) {
-    let (mut seats, mut heights) = (Vec::new(), Vec::with_capacity(width));
-    let mut squares = vec![0; FARTHEST + width + LANES + FARTHEST];
-    for row in rows.chunks_mut(width) {
-        if square_low(row, &mut squares) {
-            continue;
+/// Room for what is made of a row.
+pub struct Squared {
+    /// The squares of heights, with zeros at both ends: what is not free is zero, and what lies beyond it never the nearest.
+    squares: Vec<i16>,
+    seats: Vec<(i64, i64)>,
+}
+
+impl Squared {
+    /// For rows of so many pixels.
+    pub fn new(width: usize) -> Self {
+        Self { squares: vec![0; FARTHEST + width + LANES + FARTHEST], seats: Vec::new() }
+    }
+
+    /// From the heights of a row to the squared distances, which are put to what is there.
+    pub fn row(&mut self, heights: &[u16], squared: &mut Vec<u32>) {
+        let start = squared.len();
+        let top = self.low(heights, squared);
+        // With heights that are cut off what is less than the square of these is right.
+        if top < HIGHEST * HIGHEST || heights.iter().all(|&height| height <= HIGHEST) {
+            return;
         }
-        heights.clear();
-        heights.extend_from_slice(row);
         // Within a run of free pixels only the run and its two ends count.
         let mut next = 1;
         while let Some(before) = heights[next..].iter().position(|height| *height != 0) {
             let from = next + before;
-            let end = heights[from..].iter().position(|height| *height == 0).map_or(width - 1, |n| from + n);
-            envelope(&heights[from - 1..=end], &mut row[from - 1..=end], &mut seats);
+            let end = heights[from..].iter().position(|height| *height == 0).map_or(heights.len() - 1, |n| from + n);
+            envelope(&heights[from - 1..=end], &mut squared[start + from - 1..=start + end], &mut self.seats);
             next = end + 1;
         }
     }
-}
 
-/// The same of a row whose squares fit in 16 bits, or false: of each pixel its own square, or what lies to either side, as
-/// long as something so far off can be nearer. `squares` is room for theirs, with zeros at both ends: what is not free is
-/// zero, and what lies beyond it never the nearest.
-fn square_low(row: &mut [u32], squares: &mut [i16]) -> bool {
-    if row.iter().fold(0, |bits, height| bits | height) > u8::MAX.into() {
-        return false;
-    }
-    let mut least = 0;
-    for (to, &height) in squares[FARTHEST..].iter_mut().zip(&*row) {
-        *to = (height as i16).wrapping_mul(height as i16);
-        least = least.min(*to);
-    }
-    if least < 0 {
-        return false;
-    }
-    for (n, to) in row.chunks_mut(LANES).enumerate() {
-        let at = FARTHEST + n * LANES;
-        let mut least = [0; LANES];
-        least.copy_from_slice(&squares[at..at + LANES]);
-        let mut off = 1;
-        while off * off < least.iter().fold(0, |most, &own| most.max(own)) as usize {
-            let near = &squares[at + 1 - off - STEPS..at - 1 + off + STEPS + LANES];
-            for step in 0..STEPS {
-                let (left, right) = (&near[STEPS - 1 - step..][..LANES], &near[2 * off + STEPS - 1 + step..][..LANES]);
-                let squared = i16::try_from((off + step).pow(2)).unwrap_or(i16::MAX);
-                for ((own, left), right) in least.iter_mut().zip(left).zip(right) {
-                    *own = (*left).min(*right).saturating_add(squared).min(*own);
-                }
-            }
-            off += STEPS;
+    /// The same where squares fit in 16 bits, greater heights cut off: of each pixel its own square, or what lies to either
+    /// side, as long as something so far off can be nearer. And the greatest.
+    fn low(&mut self, heights: &[u16], squared: &mut Vec<u32>) -> u16 {
+        for (to, &height) in self.squares[FARTHEST..].iter_mut().zip(heights) {
+            *to = height.min(HIGHEST).pow(2) as i16;
         }
-        to.iter_mut().zip(least).for_each(|(to, own)| *to = own as u32);
+        let most = |least: &[i16; LANES]| least.iter().fold(0, |most, &own| most.max(own)) as usize;
+        let mut top = 0;
+        for from in (0..heights.len()).step_by(LANES) {
+            let at = FARTHEST + from;
+            let Some(mut least) = self.squares[at..].first_chunk::<LANES>().copied() else { break };
+            let mut off = 1;
+            while off * off < most(&least) {
+                let near = [at + 1 - off - STEPS, at + off].map(|from| self.squares[from..].first_chunk());
+                let [Some(left), Some(right)]: [Option<&[i16; LANES + STEPS - 1]>; 2] = near else { break };
+                let squares: [i16; STEPS] =
+                    std::array::from_fn(|step| i16::try_from((off + step).pow(2)).unwrap_or(i16::MAX));
+                for (n, own) in least.iter_mut().enumerate() {
+                    for (step, squared) in squares.into_iter().enumerate() {
+                        let near = left[n + STEPS - 1 - step].min(right[n + step]);
+                        *own = near.saturating_add(squared).min(*own);
+                    }
+                }
+                off += STEPS;
+            }
+            top = top.max(most(&least));
+            let own = &least[..LANES.min(heights.len() - from)];
+            squared.extend(own.iter().map(|&own| own as u32));
+        }
+        top as u16
     }
-    true
 }
 
 /// The lower envelope of the parabolas over some heights; `seats` is room for the places of those that are in it, and
 /// what each is at zero.
-fn envelope(heights: &[u32], squared: &mut [u32], seats: &mut Vec<(i64, i64)>) {
+fn envelope(heights: &[u16], squared: &mut [u32], seats: &mut Vec<(i64, i64)>) {
     seats.clear();
     for (x, &height) in heights.iter().enumerate() {
         let (x, height) = (x as i64, i64::from(height));
@@ -108,16 +117,17 @@ mod tests {
         };
         // From low rows to those whose squares do not fit in 16 bits.
         for (width, top) in [(40, 4), (500, 40), (500, 182), (700, 183), (700, 256), (700, 400), (35, 1000)] {
-            let mut row: Vec<u32> = (0..width).map(|_| if next(50) == 0 { 0 } else { 1 + next(top - 1) }).collect();
+            let mut row: Vec<u16> =
+                (0..width).map(|_| if next(50) == 0 { 0 } else { 1 + next(top - 1) as u16 }).collect();
             (row[0], row[width - 1]) = (0, 0);
             // And one that is as high as it may be nearly everywhere.
-            let mut even = vec![top - 1; width];
+            let mut even = vec![top as u16 - 1; width];
             (even[0], even[width - 1]) = (0, 0);
+            let (mut made, mut all) = (Squared::new(width), Vec::new());
             let heights = [row, even];
-            let mut squared = heights.concat();
-            square(&mut squared, width);
-            for (row, squared) in heights.iter().zip(squared.chunks(width)) {
-                let places = || row.iter().enumerate().map(|(x, height)| (x, height.pow(2)));
+            heights.iter().for_each(|row| made.row(row, &mut all));
+            for (row, squared) in heights.iter().zip(all.chunks(width)) {
+                let places = || row.iter().enumerate().map(|(x, &height)| (x, u32::from(height).pow(2)));
                 let least = |x: usize| places().map(|(other, square)| square + x.abs_diff(other).pow(2) as u32).min();
                 assert!(squared.iter().enumerate().all(|(x, own)| least(x) == Some(*own)), "{width} {top}");
             }
