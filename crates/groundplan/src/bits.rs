@@ -153,14 +153,38 @@ pub fn bits_of(eight: [u8; 8]) -> u64 {
     u64::from_le_bytes(eight).wrapping_mul(0x0102_0408_1020_4080) >> 56
 }
 
-/// A bit for each of up to [`WORD`] pixels, mostly alike eight by eight: whether it is of the values that are wanted.
-pub fn word_of(pixels: &[u8], wanted: &[bool; 256]) -> u64 {
-    pixels.chunks(8).rev().fold(0, |word, eight| {
-        let bit = |pixel: u8| u64::from(wanted[usize::from(pixel)]);
-        let alike = <[u8; 8]>::try_from(eight).is_ok_and(|eight| eight == [eight[0]; 8]);
-        let bits = if alike { 255 * bit(eight[0]) } else { eight.iter().rev().fold(0, |bits, &p| bits << 1 | bit(p)) };
-        word << 8 | bits
-    })
+/// Values of a pixel that are wanted.
+pub struct Wanted {
+    values: [bool; 256],
+    /// The first and how many more, where they follow one another, as they mostly do: many pixels are compared together.
+    row: Option<[u8; 2]>,
+}
+
+impl Wanted {
+    pub fn new(values: [bool; 256]) -> Self {
+        let first = values.iter().position(|&is| is);
+        let count = values.iter().filter(|is| **is).count();
+        let follow = |first: &usize| values[*first..].iter().take_while(|is| **is).count() == count;
+        let row = first.filter(follow).map(|first| [first as u8, (count - 1) as u8]);
+        Self { values, row }
+    }
+
+    /// A bit for each of up to [`WORD`] pixels.
+    pub fn word(&self, pixels: &[u8]) -> u64 {
+        let Some([first, more]) = self.row else {
+            return pixels.iter().rev().fold(0, |word, &p| word << 1 | u64::from(self.values[usize::from(p)]));
+        };
+        let is = |pixel: &u8| pixel.wrapping_sub(first) <= more;
+        // Of a whole word it is known how many there are.
+        match pixels.first_chunk::<WORD>() {
+            Some(pixels) => word_where(pixels.iter().map(is)),
+            None => word_where(pixels.iter().map(is)),
+        }
+    }
+
+    pub fn holds(&self, pixel: u8) -> bool {
+        self.values[usize::from(pixel)]
+    }
 }
 
 #[cfg(test)]
@@ -184,6 +208,24 @@ mod tests {
             let part = either.part(count / 3..count);
             assert!((count / 3..count).all(|n| part.get(n - count / 3) == either.get(n)));
             assert_eq!(part.count(0..count - count / 3), either.count(count / 3..count));
+        }
+    }
+
+    #[test]
+    fn pixels_are_those_of_the_values_that_are_wanted() {
+        let row = |from: u8, to: u8| move |value: u8| (from..=to).contains(&value);
+        let wanted: [&dyn Fn(u8) -> bool; 6] =
+            [&row(1, 0), &row(0, 0), &row(254, 255), &row(17, 90), &row(0, 255), &|value| value % 3 == 1];
+        for is in wanted {
+            let wanted = Wanted::new(std::array::from_fn(|value| is(value as u8)));
+            for count in [0, 1, 63, 64] {
+                for start in [0, 60, 200] {
+                    let pixels: Vec<u8> = (0..count).map(|n| (start + n) as u8).collect();
+                    let word = wanted.word(&pixels);
+                    assert!((0..WORD).all(|n| (word >> n & 1 == 1) == (n < pixels.len() && is(pixels[n]))));
+                    assert!(pixels.iter().all(|&pixel| wanted.holds(pixel) == is(pixel)));
+                }
+            }
         }
     }
 

@@ -6,7 +6,7 @@
 //! eigenvalues' disparity is the gradient's magnitude. Sums of integers only, so nothing depends on the order.
 
 use crate::bands::{BAND_ROWS, map_bands};
-use crate::bits::{WORD, word_of};
+use crate::bits::{WORD, Wanted};
 use crate::grid::{Grid, State, rounded, undirected};
 use crate::parameters::Parameters;
 use crate::pixels::Pixels;
@@ -141,12 +141,11 @@ impl Edges {
 
 /// Columns of the edge pixels of each row of the band, among some columns.
 fn edge_pixels(grid: &Grid, band: Range<usize>, among: &Range<usize>) -> Vec<Vec<u32>> {
-    let taken = grid.table.states.map(|s| s == State::Occupied);
+    let taken = Wanted::new(grid.table.states.map(|s| s == State::Occupied));
     // With a column to either side, where there is one.
     let wider = among.start.saturating_sub(1)..(among.end + 1).min(grid.frame.width);
-    let words = |y: usize| -> Vec<u64> {
-        grid.row(y)[wider.clone()].chunks(WORD).map(|pixels| word_of(pixels, &taken)).collect()
-    };
+    let words =
+        |y: usize| -> Vec<u64> { grid.row(y)[wider.clone()].chunks(WORD).map(|pixels| taken.word(pixels)).collect() };
     // The map's border is no edge: what lies beyond it is not seen.
     let (top, last) = (grid.frame.height - 1, wider.len() - 1);
     let mut rows = [words(band.start.saturating_sub(1)), words(band.start), Vec::new()];

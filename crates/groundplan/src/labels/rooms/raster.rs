@@ -4,7 +4,7 @@ use super::super::patches::Area;
 use super::super::recall::{Key, Recall};
 use super::islands::{self, Islands};
 use crate::bands::map_bands;
-use crate::bits::{Bits, WORD, lowest, word_of};
+use crate::bits::{Bits, WORD, Wanted, lowest};
 use crate::grid::{Grid, State};
 use std::ops::Range;
 use std::sync::Arc;
@@ -148,7 +148,7 @@ pub struct Part {
 
 impl Part {
     fn new(grid: &Grid, side: usize, width: usize, band: Range<usize>) -> Self {
-        let is_free = grid.table.states.map(|s| s == State::Free);
+        let free = Wanted::new(grid.table.states.map(|s| s == State::Free));
         let mut part =
             Self { first: band.start, free: Bits::new(band.len() * width), rows: [usize::MAX, 0], columns: [width, 0] };
         let mut row = vec![true; width];
@@ -156,11 +156,11 @@ impl Part {
             let start = (y - part.first) * width;
             if side == 1 {
                 for (n, pixels) in grid.row(y).chunks(WORD).enumerate() {
-                    part.free.add(start + n * WORD, word_of(pixels, &is_free));
+                    part.free.add(start + n * WORD, free.word(pixels));
                 }
             } else {
                 row.fill(true);
-                (y * side..(y + 1) * side).for_each(|line| clear_taken(grid, &is_free, line, side, &mut row));
+                (y * side..(y + 1) * side).for_each(|line| clear_taken(grid, &free, line, side, &mut row));
                 for (n, flags) in row.chunks(WORD).enumerate() {
                     let word = flags.iter().rev().fold(0, |word, &flag| word << 1 | u64::from(flag));
                     part.free.add(start + n * WORD, word);
@@ -178,8 +178,8 @@ impl Part {
 }
 
 /// Takes out of a row of the raster what is not free in one of the map's rows.
-fn clear_taken(grid: &Grid, free: &[bool; 256], y: usize, side: usize, row: &mut [bool]) {
+fn clear_taken(grid: &Grid, free: &Wanted, y: usize, side: usize, row: &mut [bool]) {
     for (to, from) in row.iter_mut().zip(grid.row(y).chunks(side)) {
-        *to &= from.iter().all(|&value| free[usize::from(value)]);
+        *to &= from.iter().all(|&value| free.holds(value));
     }
 }
