@@ -137,8 +137,11 @@ impl Looks<'_> {
             }
         }
         let count = places.len() as f64;
-        let posts = [-1.0, 1.0].map(|side| self.posts(axis, side * width / 2.0));
-        let [left, right] = [0, 1].map(|side| (2.0 * walled[side] / count).max(posts[side]).min(1.0));
+        let [left, right] = [0, 1].map(|side| {
+            let walled = 2.0 * walled[side] / count;
+            // No posts make more of a side that is walled.
+            if walled < 1.0 { walled.max(self.posts(axis, [-1.0, 1.0][side] * width / 2.0)).min(1.0) } else { 1.0 }
+        });
         free / count * left.min(right).sqrt()
     }
 
