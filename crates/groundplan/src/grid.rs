@@ -194,7 +194,8 @@ impl<'a> Grid<'a> {
     pub(crate) fn pixel_at(&self, point: [f64; 2]) -> Option<[usize; 2]> {
         let [x, y] = self.frame.to_pixels(point);
         let is_inside = (0.0..self.frame.width as f64).contains(&x) && (0.0..self.frame.height as f64).contains(&y);
-        is_inside.then_some([x as usize, y as usize])
+        // By way of 32 bits, which is a step less for most machines.
+        is_inside.then_some([x as u32 as usize, y as u32 as usize])
     }
 
     pub(crate) fn state_of(&self, [x, y]: [usize; 2]) -> State {

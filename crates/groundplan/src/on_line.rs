@@ -37,7 +37,8 @@ impl<'a> OnLine<'a> {
     /// The lines that a place across lies on.
     pub fn at(&self, place: f64) -> Range<usize> {
         let step = self.step(place);
-        let lines = if step >= 0.0 { self.steps.get(step as usize).copied() } else { None };
+        // By way of 32 bits, which is a step less for most machines.
+        let lines = if step >= 0.0 { self.steps.get(step as u32 as usize).copied() } else { None };
         let [mut from, mut to] = lines.unwrap_or_default().map(|n| n as usize);
         while from < to && self.offsets[from] < place - self.near {
             from += 1;

@@ -128,7 +128,8 @@ pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize>
     let place = |n: usize| first + n as f64 * view.cell;
     let mut found = Vec::new();
     // Mostly nothing stands there.
-    if !view.barred_where(range.clone(), place(0), place(count), |barred| barred > 0.0).any() {
+    let barred = view.barred_in(place(0), place(count));
+    if barred.first(range.clone(), barred.least(|barred| barred > 0.0)).is_none() {
         return found;
     }
     // For how many columns each place across has been free, and what is reached there.

@@ -107,7 +107,8 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Adds to each cell what lies at so many samples of a lane.
+    /// Adds to each cell what lies at so many samples of a lane: by itself, so that all that it goes by is at hand.
+    #[inline(never)]
     fn add<const PER: usize>(&self, mut place: [i64; 2], step: [i64; 2], cells: &mut [u8]) {
         for cell in cells {
             for _ in 0..PER {
@@ -226,7 +227,8 @@ impl Alike {
                 least = least.min((if self.step[axis] > 0 { above } else { below }) * self.pace[axis]);
             }
         }
-        (least - SLACK).max(0.0) as usize + 1
+        // By way of 32 bits, which is a step less for most machines.
+        (least - SLACK).max(0.0) as u32 as usize + 1
     }
 }
 

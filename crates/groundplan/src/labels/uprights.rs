@@ -9,7 +9,7 @@ const LONGEST: f64 = 1.7;
 /// Edge pixels no further apart than this along either axis are of one thing.
 const GAP: u32 = 2;
 /// So many things at once are few.
-const MANY: usize = 1 << 16;
+const MANY: usize = 1 << 12;
 
 /// Something small that stands by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -190,10 +190,12 @@ impl<'a> Line<'a> {
     /// Free all across the line's band; outside the raster nothing is.
     fn is_free(&self, step: i64, near: i64) -> bool {
         let [x, y] = self.place(step);
-        (-near..=near).all(|n| {
+        let is_free = |n: i64| {
             let place = [x - self.step[1] * n as f64, y + self.step[0] * n as f64];
             self.raster.at(place).is_some_and(|pixel| self.raster.free.get(pixel))
-        })
+        };
+        // What stands mostly stands on the line.
+        (0..=near).all(|n| is_free(n) && (n == 0 || is_free(-n)))
     }
 
     /// The gaps beside which edge pixels lie along the line, at some steps in ascending order.

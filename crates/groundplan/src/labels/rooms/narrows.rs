@@ -26,6 +26,8 @@ const AT_ONCE: usize = 1 << 22;
 /// places that it joins may take.
 const SQUARE: usize = 2048;
 const AROUND: f64 = 8.0;
+/// So many blocks are compared with their neighbours together.
+const TOGETHER: usize = 16;
 
 /// Straight closures of all narrows, in the order of the places that they part; on a large raster, square by square.
 pub fn find(raster: &Raster, clearance: &Clearance, threads: usize, recall: &Recall) -> Vec<Bar> {
@@ -87,9 +89,13 @@ impl<'a> Window<'a> {
         let basins = self.basins();
         let mut borders: Vec<(u32, u32, usize)> = Vec::new();
         for step in [1, self.blocks.width] {
-            for (block, (&a, &b)) in basins.iter().zip(&basins[step..]).enumerate() {
-                if a != b && a != 0 && b != 0 {
-                    borders.push((a.min(b), a.max(b), if a < b { block } else { block + step }));
+            // Mostly many one after another are of one basin, or of none.
+            let pairs = basins.chunks(TOGETHER).zip(basins[step..].chunks(TOGETHER)).enumerate();
+            for (n, (some, others)) in pairs.filter(|(_, (some, others))| some != others) {
+                for (block, (&a, &b)) in (n * TOGETHER..).zip(some.iter().zip(others)) {
+                    if a != b && a != 0 && b != 0 {
+                        borders.push((a.min(b), a.max(b), if a < b { block } else { block + step }));
+                    }
                 }
             }
         }
@@ -201,7 +207,7 @@ impl<'a> Window<'a> {
         let reach = clearance.sqrt() + TOUCH;
         let (cx, cy) = (x as i64, y as i64);
         let span = reach.ceil() as i64;
-        let mut touched: Vec<(i64, i64, i64)> = Vec::new();
+        let mut touched: Vec<(i64, i64, i64)> = Vec::with_capacity(8 * span as usize);
         for y in (cy - span).max(0)..=(cy + span).min(height as i64 - 1) {
             let row = self.pixels.row(y as usize);
             // What is nearer than its clearance is free.

@@ -171,7 +171,8 @@ pub fn find(
 fn samples(runs: &Runs, number: impl Fn(usize) -> u32, counts: &[usize], most: usize) -> Vec<Vec<usize>> {
     let steps: Vec<usize> = counts.iter().map(|count| count.div_ceil(most).max(1)).collect();
     let mut next = vec![0; counts.len()];
-    let mut samples = vec![Vec::new(); counts.len()];
+    let mut samples: Vec<Vec<usize>> =
+        counts.iter().zip(&steps).map(|(count, step)| Vec::with_capacity(count.div_ceil(*step))).collect();
     for (n, run) in runs.all.iter().enumerate() {
         let number = number(n) as usize;
         let pixels = run.pixels();

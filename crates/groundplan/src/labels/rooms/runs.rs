@@ -28,7 +28,7 @@ impl Run {
 }
 
 /// Where runs are is noted for every so many pixels.
-const STEP: usize = 256;
+const STEP: usize = 64;
 
 /// The runs of a raster in their order, none on its border. Pixels in no run have the number 0.
 pub struct Runs {

@@ -125,7 +125,9 @@ mod tests {
             (even[0], even[width - 1]) = (0, 0);
             let (mut made, mut all) = (Squared::new(width), Vec::new());
             let heights = [row, even];
-            heights.iter().for_each(|row| made.row(row, &mut all));
+            for row in &heights {
+                made.row(row, &mut all);
+            }
             for (row, squared) in heights.iter().zip(all.chunks(width)) {
                 let places = || row.iter().enumerate().map(|(x, &height)| (x, u32::from(height).pow(2)));
                 let least = |x: usize| places().map(|(other, square)| square + x.abs_diff(other).pow(2) as u32).min();
