@@ -52,18 +52,22 @@ def legs(
     way: int,
     end: int,
     bay: int = BAY,
+    empty: int | None = None,
 ) -> Picture:
-    """Rows of two racks back to back, in blocks of so many bays: a share is full, the others show their legs."""
+    """Rows of two racks back to back, in blocks of so many bays: a share is full, the others show their legs.
+
+    One row may be empty.
+    """
     draws = np.random.default_rng(seed)
     lefts = [20 + end + bay * sum(blocks[:n]) + way * n for n in range(len(blocks))]
     picture = hall(2 * end + bay * sum(blocks) + way * (len(blocks) - 1), (rows + 1) * aisle + 2 * rows * depth)
-    for row in (20 + aisle + n * (aisle + 2 * depth) for n in range(rows)):
+    for number, row in enumerate(20 + aisle + n * (aisle + 2 * depth) for n in range(rows)):
         for left, bays in zip(lefts, blocks, strict=True):
             for rack in (row, row + depth):
                 for post in range(bays + 1):
                     x = min(max(left + post * bay - 1, left), left + bays * bay - 2)
                     picture[rack : rack + 2, x : x + 2] = picture[rack + depth - 2 : rack + depth, x : x + 2] = 0
-                for x in (left + bay * np.flatnonzero(draws.random(bays) < full)).tolist():
+                for x in (left + bay * np.flatnonzero(draws.random(bays) < full * (number != empty))).tolist():
                     picture[rack + 1 : rack + depth - 1, x + 2 : x + bay - 2] = 0
     return picture
 
@@ -96,6 +100,24 @@ def test_posts_that_recur_across_rows_as_deep_as_aisles_are_wide_make_no_bays_of
     assert [way["width"] for way in survey.of_kind("corridor")] == pytest.approx([2.2] * 4 + [4.0] * 4, abs=0.2)
     crossings = [junction["type"] for junction in survey.of_kind("junction")]
     assert sorted(crossings) == ["L"] * 4 + ["T"] * 8 + ["X"] * 4
+
+
+@pytest.mark.parametrize(
+    ("seed", "rows", "way", "end", "empty"),
+    [
+        *((seed, 2, 40, 90, None) for seed in (5, 8, 26, 36)),
+        *((seed, 3, 44, 70, 0) for seed in (3, 6, 18, 23)),
+    ],
+)
+def test_a_way_as_wide_as_a_bay_is_told_by_the_rows_though_those_at_the_walls_are_wider(
+    seed: int, rows: int, way: int, end: int, empty: int | None
+) -> None:
+    # Of an empty row the legs recur right over the way.
+    full = 0.6 if empty is None else 0.7
+    picture = legs(seed, full=full, aisle=AISLE, depth=DEPTH, rows=rows, blocks=(6, 6), way=way, end=end, empty=empty)
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    crossings = [junction["type"] for junction in survey.of_kind("junction")]
+    assert sorted(crossings) == ["L"] * 4 + ["T"] * (2 * rows) + ["X"] * (rows - 1)
 
 
 @pytest.mark.parametrize("bay", [50, 54])

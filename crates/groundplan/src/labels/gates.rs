@@ -4,6 +4,7 @@ use super::Evidence;
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
 use super::look::Look;
+use super::passing;
 use super::rows::Row;
 use super::sections::{Columns, WIDTH};
 use super::seen::Seen;
@@ -51,7 +52,8 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let known: Vec<Strip> = in_line(gates.clone()).into_iter().chain(strips.iter().filter(is_known).cloned()).collect();
     let staggered = LazyCell::new(|| Widths::of_staggered(views, &known));
     let mut sure = Widths::of(views, strips.iter().filter(is_known).chain(&gates));
-    let through = through.find(strips, &mut sure);
+    let within = LazyCell::new(|| passing::are_within(views, &known));
+    let through = through.find(strips, &mut sure, &within);
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
     doubtful.retain(|gate| sure[gate.direction].is_empty() || sure[gate.direction].have(gate.width(), None));
     gates.extend(doubtful);

@@ -75,6 +75,15 @@ impl Passing {
     }
 }
 
+/// For each direction, whether some of its strips lead through rows of a place between their ends.
+pub fn are_within(views: &[Turned], strips: &[Strip]) -> Vec<bool> {
+    let mut are = vec![false; views.len()];
+    for Place { views: [_, other], passing, .. } in Place::of_each(views, strips) {
+        are[other.direction] |= passing.iter().any(|own| own.is_within);
+    }
+    are
+}
+
 /// Between which strips there is nothing but walls between halls, where no other crosses them.
 fn between_halls(views: &[Turned], strips: &[Strip]) -> BTreeMap<[usize; 2], bool> {
     let extents: Vec<[f64; 2]> = strips.iter().map(|strip| strip.along).collect();

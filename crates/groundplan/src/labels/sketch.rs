@@ -142,7 +142,7 @@ impl Sketch {
 /// left beside the ways.
 fn planned(evidence: &Evidence, look: &Look, views: Vec<Turned>, on_legs: &[Row]) -> (Vec<Turned>, Plan) {
     let plan = Plan::of(evidence, look, &views, on_legs);
-    let left = carried::without_ways(evidence, &views, &plan.strips, on_legs);
+    let left = carried::without_ways(evidence, &views, &plan.across, on_legs);
     if left == on_legs {
         return (views, plan);
     }
@@ -171,6 +171,8 @@ pub struct Plan {
     pub rows: Vec<Row>,
     /// The racks, of which not all are such rows.
     pub racks: Vec<Row>,
+    /// The ways with those across rows that are no wider than bays.
+    across: Vec<Strip>,
 }
 
 impl Plan {
@@ -205,6 +207,7 @@ impl Plan {
         let gates = gates::find(evidence, look, views, &plan.strips, &plan.rows);
         let (known, more) = (plan.strips.len(), gates.len());
         plan.strips.extend(gates);
+        let across = plan.strips.clone();
         plan.strips = joined::apart(views, widths::alike(views, plan.strips));
         let carried = carried::on(evidence, look, views, plan.strips.clone());
         if more > 0 || plan.strips.len() < known || carried != plan.strips {
@@ -228,6 +231,7 @@ impl Plan {
             plan = Self::new(views, narrow, threads);
             plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }
+        plan.across = across;
         plan
     }
 
@@ -271,7 +275,7 @@ impl Plan {
             extents[n][side] = place;
         }
         let rows = racks::find(views, &strips, &extents, threads);
-        Self { strips, meetings, ends, extents, rows, racks: Vec::new() }
+        Self { strips, meetings, ends, extents, rows, racks: Vec::new(), across: Vec::new() }
     }
 }
 

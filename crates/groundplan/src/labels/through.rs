@@ -12,6 +12,7 @@ use super::turned::Turned;
 use super::whole;
 use super::widths::Widths;
 use crate::ends::{overlap, shared};
+use std::cell::LazyCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What is open in some rows, one beside another.
@@ -35,7 +36,7 @@ pub const BETWEEN_CELLS: f64 = 0.1;
 /// What is likelier than this is no way, whatever else is one.
 const LIKELY: f64 = 0.3;
 /// What crosses all rows of a place is a way when it is as wide as other ways and less likely than this by chance; when
-/// none is known; and when it has another width than those. Past the ends of all rows there are ways in most halls, and
+/// none is known, or none between the rows' ends; and when it has another width than those. Past the ends of all rows there are ways in most halls, and
 /// LIKELY is enough.
 const ALIKE: f64 = 0.05;
 const FIRST: f64 = 0.01;
@@ -71,8 +72,15 @@ impl<'a> Through<'a> {
         Self { open: Openings::new(views.len(), &rows), rows, above, below, walls, walled: Vec::new() }
     }
 
-    /// The ways, where those of known widths are, each through one row after another.
-    pub fn find(mut self, strips: &[Strip], widths: &mut [Widths]) -> Vec<Strip> {
+    /// The ways, where those of known widths are, each through one row after another; and for each direction it is told
+    /// whether some of these lead through rows between their ends.
+    pub fn find(
+        mut self,
+        strips: &[Strip],
+        widths: &mut [Widths],
+        known_within: &LazyCell<Vec<bool>, impl FnOnce() -> Vec<bool>>,
+    ) -> Vec<Strip> {
+        let mut found_within = vec![false; widths.len()];
         self.walled = self.rows.iter().map(|seen| [0, 1].map(|side| seen.is_at_wall(strips, side))).collect();
         let mut left = Vec::new();
         for n in 0..self.rows.len() {
@@ -91,7 +99,8 @@ impl<'a> Through<'a> {
             left.sort_by(|a, b| a.chance.total_cmp(&b.chance));
             let known = ways.len();
             for common in &left {
-                if self.is_way(common, widths) && !is_taken(&taken, common) {
+                let is_told = |direction: usize| found_within[direction] || known_within[direction];
+                if self.is_way(common, widths, is_told) && !is_taken(&taken, common) {
                     common.rows.iter().for_each(|&row| taken[row].push(common.ends));
                     ways.push(common.clone());
                 }
@@ -104,10 +113,12 @@ impl<'a> Through<'a> {
             }
             for way in &ways[known..] {
                 let first = &self.rows[way.rows[0]];
+                let (direction, is_within) = (first.views[1].direction, !self.is_past_ends(way));
                 // What passes the ends is as wide as the hall leaves: if that is a bay's width it tells no others.
-                if !(first.is_as_bays(way.ends) && self.is_past_ends(way)) {
-                    widths[first.views[1].direction].add(way.width() + BETWEEN_CELLS);
+                if is_within || !first.is_as_bays(way.ends) {
+                    widths[direction].add(way.width() + BETWEEN_CELLS);
                 }
+                found_within[direction] |= is_within;
                 self.open.take(&way.rows, way.ends);
             }
             self.open.count();
@@ -198,14 +209,14 @@ impl<'a> Through<'a> {
         }
     }
 
-    fn is_way(&self, common: &Common, widths: &[Widths]) -> bool {
+    fn is_way(&self, common: &Common, widths: &[Widths], is_told_within: impl Fn(usize) -> bool) -> bool {
         let [view, other] = self.rows[common.rows[0]].views;
         let known = &widths[other.direction];
         let limit = match (self.is_whole(common), known.have(common.width() + BETWEEN_CELLS, view.pitch)) {
             (false, _) => SOME,
             (true, _) if self.is_past_ends(common) => LIKELY,
             (true, true) => ALIKE,
-            (true, false) if known.is_empty() => FIRST,
+            (true, false) if known.is_empty() || !is_told_within(other.direction) => FIRST,
             (true, false) if self.rows[common.rows[0]].is_as_bays(common.ends) => SOME,
             (true, false) => OTHER,
         };
