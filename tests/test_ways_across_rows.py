@@ -148,6 +148,30 @@ def test_a_gap_as_wide_as_the_ways_of_the_place_is_a_way_though_it_leads_through
     assert across == pytest.approx([3.6] * 3, abs=0.15)
 
 
+@pytest.mark.parametrize(("rows", "gap"), [(2, 50), (3, 50)])
+def test_a_gap_in_each_full_row_of_two_racks_is_a_way_though_not_as_wide_as_those_at_the_walls(
+    rows: int, gap: int
+) -> None:
+    # One in each row, at a place of its own.
+    picture = shelves([], rows=rows)
+    for row in range(rows):
+        low = 20 + AISLE + row * (AISLE + 2 * DEPTH)
+        left = 20 + 72 + 60 + 70 * row
+        picture[low : low + 2 * DEPTH, left : left + gap] = 254
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    across = sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C"))
+    assert across == pytest.approx(sorted([3.6, 3.6, *[gap * RESOLUTION] * rows]), abs=0.15)
+
+
+def test_a_gap_longer_than_beams_are_is_no_empty_bay() -> None:
+    picture = shelves([])
+    low = 20 + AISLE
+    picture[low : low + 2 * DEPTH, 200:292] = 254
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    across = sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C"))
+    assert across == pytest.approx([3.6, 3.6, 4.6], abs=0.15)
+
+
 @pytest.mark.parametrize("at", [4.0, 9.0, 15.6])
 def test_a_gap_as_wide_as_a_pallet_is_no_way_between_aisles_for_trucks(at: float) -> None:
     # One row of 24 m by 2.4 m with aisles of 3 m on both sides, 3 m from the walls at its ends.

@@ -55,8 +55,12 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let within = LazyCell::new(|| passing::are_within(views, &known));
     let through = through.find(strips, &mut sure, &within);
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
-    doubtful.retain(|gate| sure[gate.direction].is_empty() || sure[gate.direction].have(gate.width(), None));
-    gates.extend(doubtful);
+    let open = LazyCell::new(|| passing::open_through(views, &known, &doubtful));
+    let is_told = |n: usize, gate: &Strip| {
+        let widths = &sure[gate.direction];
+        widths.is_empty() || widths.have(gate.width(), None) || (!within[gate.direction] && open[n])
+    };
+    gates.extend(doubtful.iter().enumerate().filter(|(n, gate)| is_told(*n, gate)).map(|(_, gate)| gate.clone()));
     // Where no row beside tells a bay from a way, a way is as wide as others of the place; and where ways are staggered from
     // row to row, as those.
     let is_as_wide = |gate: &Strip, pitch, is_alone| {

@@ -54,6 +54,7 @@ mod runs;
 mod sampled;
 mod sections;
 mod seen;
+mod seldom;
 mod shares;
 mod shut;
 mod sided;

@@ -2,12 +2,17 @@
 
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
+use super::family;
 use super::gates::{crossing, leading_across};
 use super::rows::{self, Row};
+use super::seldom;
 use super::turned::Turned;
 use super::whole;
 use crate::ends::{holds, overlap, wider};
 use std::collections::{BTreeMap, BTreeSet};
+
+/// What leads through a row of two racks is no narrower than this share of the aisles beside it.
+const NARROWER: f64 = family::LED_TO;
 
 /// The aisles along a direction that another one crosses, and the rows between them.
 pub struct Place<'a> {
@@ -42,6 +47,21 @@ impl<'a> Place<'a> {
 }
 
 impl Place<'_> {
+    /// True when the rows that something passes through are of two racks each, and with those side by side with them open
+    /// more often than by chance.
+    pub fn is_open_through(&self, strips: &[Strip], own: &Passing, width: f64) -> bool {
+        let is_as_wide = |&aisle: &usize| width >= NARROWER * strips[self.aisles[aisle]].width();
+        let may_be_led_through = |&row: &usize| {
+            let (row, between) = &self.rows[row];
+            seldom::is_double(row) && between.iter().all(is_as_wide)
+        };
+        own.rows.iter().all(may_be_led_through)
+            && own.rows.first().is_some_and(|&row| {
+                let rows = self.rows_with(row).into_iter().map(|row| &self.rows[row].0);
+                seldom::are_open(self.views[0], rows, width)
+            })
+    }
+
     /// The rows of the part of the place that a row is of: those that lie one beside another, walls between halls left out.
     pub fn rows_with(&self, row: usize) -> BTreeSet<usize> {
         let (mut found, mut next) = (BTreeSet::from([row]), vec![row]);
@@ -82,6 +102,19 @@ pub fn are_within(views: &[Turned], strips: &[Strip]) -> Vec<bool> {
         are[other.direction] |= passing.iter().any(|own| own.is_within);
     }
     are
+}
+
+/// Which of some more strips lead through rows that are open more often than by chance, and end before others.
+pub fn open_through(views: &[Turned], strips: &[Strip], more: &[Strip]) -> Vec<bool> {
+    let all = [strips, more].concat();
+    let mut open = vec![false; more.len()];
+    for place in Place::of_each(views, &all) {
+        let passing = &place.passing[strips.len()..];
+        for (n, own) in passing.iter().enumerate() {
+            open[n] |= place.is_open_through(&all, own, more[n].width());
+        }
+    }
+    open
 }
 
 /// Between which strips there is nothing but walls between halls, where no other crosses them.

@@ -32,7 +32,7 @@ const PARTS: f64 = 2.0;
 const FUNDAMENTAL: f64 = 0.7;
 /// No bay is longer than beams are, metres: what is told to be longer is two of them, or one and a half with a leg in each
 /// one's middle. Where most are full few posts are seen from one to the next: the one stands out by the other factor.
-const LONGEST: f64 = 3.9;
+pub const LONGEST: f64 = 3.9;
 const BAYS: [f64; 2] = [2.0, 1.5];
 const PARTIAL: f64 = 6.0;
 /// Of what recurs along faces at least this share of the pairs has a row beside it from one to the other, and of those twice

@@ -36,8 +36,8 @@ pub const BETWEEN_CELLS: f64 = 0.1;
 /// What is likelier than this is no way, whatever else is one.
 const LIKELY: f64 = 0.3;
 /// What crosses all rows of a place is a way when it is as wide as other ways and less likely than this by chance; when
-/// none is known, or none between the rows' ends; and when it has another width than those. Past the ends of all rows there are ways in most halls, and
-/// LIKELY is enough.
+/// none is known, or none between the rows' ends; and when it has another width than those. Past the ends of all rows there
+/// are ways in most halls, and LIKELY is enough.
 const ALIKE: f64 = 0.05;
 const FIRST: f64 = 0.01;
 const OTHER: f64 = 0.005;

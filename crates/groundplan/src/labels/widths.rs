@@ -3,6 +3,7 @@
 use super::beside::placed;
 use super::corridors::Strip;
 use super::passing::{Passing, Place};
+use super::pitch::LONGEST;
 use super::rows::SHORTEST;
 use super::sections::is_as_bays;
 use super::turned::Turned;
@@ -68,7 +69,8 @@ impl Widths {
 
 /// The strips without those that lead through some rows of a place and have no width of what leads through all: bays; nor
 /// those at a wall that the rows beside go on to. Where nothing leads through all but past their ends, what has no bays'
-/// width is none. Nor those beside which, with no rack between, one leads through more rows.
+/// width is none, nor what leads through rows of two racks that are open more often than by chance. Nor those beside which,
+/// with no rack between, one leads through more rows.
 pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let placed = placed(views, strips.iter().map(Strip::place));
@@ -86,9 +88,10 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
             // Ways past the rows' ends are as wide as the hall leaves, and tell nothing of what leads through the rows.
             let is_no_bay = || {
                 !is_told_within
-                    && view
-                        .pitch
-                        .map_or_else(|| through.is_in_every_row(&place, own, width), |pitch| !is_as_bays(width, pitch))
+                    && (view.pitch.map_or_else(
+                        || width > LONGEST || through.is_in_every_row(&place, own, width),
+                        |pitch| !is_as_bays(width, pitch),
+                    ) || place.is_open_through(&strips, own, width))
             };
             stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && !is_bay());
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.

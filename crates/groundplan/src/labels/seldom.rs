@@ -1,0 +1,61 @@
+//! Whether rows of two racks back to back are open from aisle to aisle more often than chance makes: where the one is empty
+//! the other seldom is as well, unless a way leads through both.
+
+use super::rows::Row;
+use super::runs::runs;
+use super::sections::LEFT;
+use super::turned::Turned;
+
+/// Two racks back to back are so deep, metres.
+const TWO: f64 = 1.5;
+/// What is open over so much of a width is as wide.
+const AS_WIDE: f64 = 0.85;
+/// It is not by chance that as many places are open when that is less likely than this.
+const UNLIKELY: f64 = 0.001;
+
+/// True when a row may be of two racks.
+pub fn is_double(row: &Row) -> bool {
+    row.depth() >= TWO
+}
+
+/// True when each of some rows side by side that are of two racks is open at a place of a width, and all are at as many as
+/// they would hardly be by chance if each rack were empty where it is, whatever the other is.
+pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f64) -> bool {
+    let (mut half_open, mut open, mut places) = (0, 0, 0.0);
+    for row in rows.filter(|row| is_double(row)) {
+        let columns = view.column(row.along[0])..view.column(row.along[1]);
+        let middle = f64::midpoint(row.across[0], row.across[1]);
+        let blocked = |low: f64, high: f64| view.blocked_where(columns.clone(), low, high, |share| share > LEFT);
+        let blocked = [blocked(row.across[0], middle), blocked(middle, row.across[1])];
+        let least = (AS_WIDE * width / view.cell).ceil().max(1.0) as usize;
+        let count = columns.len();
+        let as_wide = |flags: &[bool]| {
+            let within = runs(flags, true).into_iter().filter(|&(from, to)| from > 0 && to < count);
+            within.map(|(from, to)| (to - from) / least).sum::<usize>()
+        };
+        let free = |half: usize, n: usize| !blocked[half].get(n);
+        let both: Vec<bool> = (0..count).map(|n| free(0, n) && free(1, n)).collect();
+        let own = as_wide(&both);
+        if own == 0 {
+            return false;
+        }
+        open += own;
+        for half in [0, 1] {
+            half_open += as_wide(&(0..count).map(|n| free(half, n) && !both[n]).collect::<Vec<_>>());
+        }
+        places += row.length() / width;
+    }
+    let share = (half_open as f64 + 0.5) / (2.0 * places + 1.0);
+    is_unlikely(open, places * share * share)
+}
+
+/// True when so many are unlikely where so many are expected (Poisson's distribution).
+fn is_unlikely(count: usize, expected: f64) -> bool {
+    let mut term = libm::exp(-expected);
+    let mut fewer = 0.0;
+    for n in 0..count {
+        fewer += term;
+        term *= expected / (n + 1) as f64;
+    }
+    1.0 - fewer < UNLIKELY
+}
