@@ -56,36 +56,42 @@ impl<'a> Look<'a> {
     /// The sums of what lies in cells, which have as many samples along as there are lanes of them, [`LANES`] at most;
     /// each lane begins at a place of its own. Those from the `first` cell on.
     pub fn cells(&self, lanes: &[[f64; 2]], step: [f64; 2], first: usize, cells: &mut [u8]) {
-        let per = lanes.len();
-        let mut starts = [[0; 2]; LANES];
+        match *lanes {
+            [one] => self.cells_of([one], step, first, cells),
+            [one, two] => self.cells_of([one, two], step, first, cells),
+            [one, two, three, ..] => self.cells_of([one, two, three], step, first, cells),
+            [] => {}
+        }
+    }
+
+    fn cells_of<const PER: usize>(&self, lanes: [[f64; 2]; PER], step: [f64; 2], first: usize, cells: &mut [u8]) {
         let step = fixed(step);
-        starts.iter_mut().zip(lanes).for_each(|(to, start)| *to = after(fixed(*start), step, first * per));
-        let starts = &starts[..per];
+        let starts = lanes.map(|start| after(fixed(start), step, first * PER));
         // The cells of which a sample is on the map, and those of which all are.
-        let count = cells.len() * per;
+        let count = cells.len() * PER;
         let mut some = count..0;
         let mut all = 0..count;
         for start in starts {
-            let own = self.on_map(*start, step, count);
+            let own = self.on_map(start, step, count);
             all = all.start.max(own.start)..all.end.min(own.end);
             if !own.is_empty() {
                 some = some.start.min(own.start)..some.end.max(own.end);
             }
         }
-        let some = (some.start / per).min(cells.len())..some.end.div_ceil(per).max(some.start / per).min(cells.len());
-        let all = all.start.div_ceil(per).clamp(some.start, some.end)..(all.end / per).min(some.end);
-        let whole = (per * per) as u8;
+        let some = (some.start / PER).min(cells.len())..some.end.div_ceil(PER).max(some.start / PER).min(cells.len());
+        let all = all.start.div_ceil(PER).clamp(some.start, some.end)..(all.end / PER).min(some.end);
+        let whole = (PER * PER) as u8;
         cells[..some.start].fill(whole * BLOCKED);
         cells[some.end..].fill(whole * BLOCKED);
-        let alike = Alike::new(starts, step);
+        let alike = Alike::new(&starts, step);
         let mut n = some.start;
         while n < some.end {
             let is_inside = all.contains(&n);
             if is_inside {
-                let place = after(starts[0], step, n * per);
+                let place = after(starts[0], step, n * PER);
                 let [x, y] = place.map(|p| (p >> BITS) as usize);
                 let reach = self.reaches[y / SIDE * self.across + x / SIDE];
-                let leap = alike.samples(place, reach) / per;
+                let leap = alike.samples(place, reach) / PER;
                 if leap > 0 {
                     let end = all.end.min(n + leap);
                     cells[n..end].fill(whole * self.samples[usize::from(self.rows[y][x])]);
@@ -93,15 +99,10 @@ impl<'a> Look<'a> {
                     continue;
                 }
             }
-            let end = if is_inside { all.end.min(n + SIDE.div_ceil(per)) } else { n + 1 };
+            let end = if is_inside { all.end.min(n + SIDE.div_ceil(PER)) } else { n + 1 };
             cells[n..end].fill(0);
             for start in starts {
-                let (place, cells) = (after(*start, step, n * per), &mut cells[n..end]);
-                match per {
-                    1 => self.add::<1>(place, step, cells),
-                    2 => self.add::<2>(place, step, cells),
-                    _ => self.add::<LANES>(place, step, cells),
-                }
+                self.add::<PER>(after(start, step, n * PER), step, &mut cells[n..end]);
             }
             n = end;
         }
