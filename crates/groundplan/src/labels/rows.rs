@@ -70,6 +70,8 @@ const LONGER: f64 = 1.5;
 /// So much of what is floor between racks may be taken, and so much of a row with no empty bays be floor.
 const CLUTTER: f64 = 0.1;
 const EMPTY: f64 = 0.1;
+/// A way beside a rack is so many times as wide as what of its inside is free.
+const WIDER: f64 = 1.7;
 /// Sides nearer than this are the same, metres.
 pub const SAME: f64 = 0.3;
 
@@ -245,6 +247,27 @@ pub fn is_within_row(strips: &[Strip], placed: &[Beside], n: usize) -> bool {
     let below = strips().map(|s| s.across[1]).filter(|v| *v <= own.across[0] + SAME);
     let above = strips().map(|s| s.across[0]).filter(|v| *v >= own.across[1] - SAME);
     above.fold(f64::INFINITY, f64::min) - below.fold(f64::NEG_INFINITY, f64::max) <= DEPTH.1
+}
+
+/// The strips without those inside racks: between two ways twice as wide that are no further apart than the faces of racks,
+/// with no more than a beam to one of them.
+pub fn without_lanes(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
+    let placed = placed(views, strips.iter().map(Strip::place));
+    let is_lane = |n: usize| {
+        let own = &strips[n];
+        let near = placed[own.direction].touching(own.along, wider(own.across, DEPTH.1));
+        let is_way = |other: &&Strip| {
+            overlap(other.along, own.along) > own.length() / 2.0 && other.width() >= WIDER * own.width()
+        };
+        let ways = || near.iter().map(|&n| &strips[n]).filter(is_way);
+        let below = ways().map(|way| own.across[0] - way.across[1]).filter(|off| *off >= -SAME).min_by(f64::total_cmp);
+        let above = ways().map(|way| way.across[0] - own.across[1]).filter(|off| *off >= -SAME).min_by(f64::total_cmp);
+        below.zip(above).is_some_and(|(below, above)| {
+            below.min(above) <= SHALLOW && below + own.width() + above <= DEPTH.1
+        })
+    };
+    let lanes: Vec<bool> = (0..strips.len()).map(is_lane).collect();
+    strips.into_iter().zip(lanes).filter(|(_, is_lane)| !is_lane).map(|(strip, _)| strip).collect()
 }
 
 /// Of rows that overlap the longest.

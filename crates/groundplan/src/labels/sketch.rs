@@ -22,7 +22,7 @@ use super::panes;
 use super::racks;
 use super::ragged::{self, Ways};
 use super::rooms::{Bar, Space};
-use super::rows::Row;
+use super::rows::{self, Row};
 use super::shut;
 use super::turned::Turned;
 use super::uprights::{self, Upright};
@@ -185,7 +185,7 @@ impl Plan {
         let is_on =
             |way: &Strip| beyond[way.direction].touching(way.along, way.across).into_iter().any(|n| on[n] == *way);
         found.retain(|way| !is_on(way));
-        let found = crossed::without_bays(evidence, look, views, found);
+        let found = rows::without_lanes(views, crossed::without_bays(evidence, look, views, found));
         let threads = evidence.threads;
         let standing = Standing::new(views, evidence.recall, threads);
         // What was too short to stay bars no way whose sides are no lines, but tells how wide that is.
