@@ -98,10 +98,9 @@ impl Heads<'_> {
     fn ways(&self, chain: &[Between]) -> Vec<Led> {
         let least = self.parameters.labels_min_width;
         let before = |row: &Between| {
-            let [one, two] = row.aisles.map(|n| self.wall(n));
-            let (one, two) = (one?, two?);
-            let [free, empty] = self.free(row, f64::midpoint(one, two));
-            ((one - two).abs() <= IN_LINE && free >= least).then_some((f64::midpoint(one, two), free, empty))
+            let wall = self.wall_of(row.aisles)?;
+            let [free, empty] = self.free(row, wall);
+            (free >= least).then_some((wall, free, empty))
         };
         let ends: Vec<Option<(f64, f64, f64)>> = flat_map_each(chain.len(), self.threads, |n| [before(&chain[n])]);
         let mut found = Vec::new();
@@ -129,6 +128,21 @@ impl Heads<'_> {
             from = to.max(from + 1);
         }
         found
+    }
+
+    /// Where the wall before both aisles of a row begins, or before one where the other leads on past it.
+    fn wall_of(&self, aisles: [usize; 2]) -> Option<f64> {
+        let [one, two] = aisles.map(|n| self.wall(n));
+        let outwards = |wall: f64| if self.side == 0 { -wall } else { wall };
+        let leads_on = |n: usize, own: Option<f64>, other: f64| {
+            own.is_none_or(|own| outwards(own) - outwards(other) >= self.strips[n].width())
+        };
+        match (one, two) {
+            (Some(one), Some(two)) if (one - two).abs() <= IN_LINE => Some(f64::midpoint(one, two)),
+            (Some(one), _) if leads_on(aisles[1], two, one) => Some(one),
+            (_, Some(two)) if leads_on(aisles[0], one, two) => Some(two),
+            _ => None,
+        }
     }
 
     /// Where what closes an aisle beyond its end begins.
