@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import groundplan
+from groundplan import simulate
 
 RESOLUTION = 0.1
 
@@ -61,3 +62,10 @@ def test_boxes_on_both_faces_of_a_row_are_not_its_end() -> None:
 def test_rows_that_go_on_to_the_wall_leave_no_way_along_it() -> None:
     survey = hall((-3.0, -3.0, -3.0))
     assert {label["type"] for label in survey.of_kind("junction")} == {"end"}
+
+
+def test_the_way_along_the_wall_is_known_though_not_all_aisles_beside_the_rows_end_there() -> None:
+    options = simulate.WarehouseOptions(halls=2, uneven=0.7, gap=6.0, width=30, depth=22, sparse=0.3)
+    survey = groundplan.survey(simulate.warehouse(options, seed=2).map)
+    at_wall = [way for way in survey.of_kind("corridor") if all(abs(x) < 0.3 for x, _ in way["axis"])]
+    assert [(way["name"][0], round(way["width"])) for way in at_wall] == [("C", 3)]

@@ -35,6 +35,20 @@ def racks(picture: Picture) -> list[dict[str, Any]]:
     return groundplan.survey(picture, resolution=0.05).of_kind("rack")
 
 
+@pytest.mark.parametrize("aisle", [2.4, 3.2])
+def test_what_is_free_between_the_beams_of_a_rack_is_no_way(aisle: float) -> None:
+    # Racks of 20 m, 2.2 m deep, of which a lidar sees three beams, 4 m before the walls at their open ends.
+    picture = hall(28.0, 4 * aisle + 6.6)
+    for row in range(3):
+        for beam in (0.0, 1.05, 2.1):
+            y = aisle + row * (aisle + 2.2) + beam
+            picture[int(20 * y) + 20 : int(20 * (y + 0.1)) + 20, 20 + 80 : 20 + 480] = 0
+    survey = groundplan.survey(picture, resolution=0.05)
+    widths = sorted(way["width"] for way in survey.of_kind("corridor"))
+    assert widths == pytest.approx(sorted([aisle] * 4 + [4.0] * 2), abs=0.25)
+    assert sorted(label["type"] for label in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 4
+
+
 @pytest.mark.parametrize("inside", [0, 205])
 def test_racks_far_apart_in_a_hall_are_racks_without_an_aisle_between(inside: int) -> None:
     picture = hall()
