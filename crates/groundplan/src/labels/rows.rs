@@ -262,9 +262,9 @@ pub fn without_lanes(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
         let ways = || near.iter().map(|&n| &strips[n]).filter(is_way);
         let below = ways().map(|way| own.across[0] - way.across[1]).filter(|off| *off >= -SAME).min_by(f64::total_cmp);
         let above = ways().map(|way| way.across[0] - own.across[1]).filter(|off| *off >= -SAME).min_by(f64::total_cmp);
-        below.zip(above).is_some_and(|(below, above)| {
-            below.min(above) <= SHALLOW && below + own.width() + above <= DEPTH.1
-        })
+        below
+            .zip(above)
+            .is_some_and(|(below, above)| below.min(above) <= SHALLOW && below + own.width() + above <= DEPTH.1)
     };
     let lanes: Vec<bool> = (0..strips.len()).map(is_lane).collect();
     strips.into_iter().zip(lanes).filter(|(_, is_lane)| !is_lane).map(|(strip, _)| strip).collect()
