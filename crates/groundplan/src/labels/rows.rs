@@ -70,8 +70,9 @@ const LONGER: f64 = 1.5;
 /// So much of what is floor between racks may be taken, and so much of a row with no empty bays be floor.
 const CLUTTER: f64 = 0.1;
 const EMPTY: f64 = 0.1;
-/// A way beside a rack is so many times as wide as what of its inside is free.
+/// A way beside a rack is so many times as wide as what of its inside is free, and lies beside so much of that.
 const WIDER: f64 = 1.7;
+const ALONG: f64 = 0.8;
 /// Sides nearer than this are the same, metres.
 pub const SAME: f64 = 0.3;
 
@@ -249,7 +250,7 @@ pub fn is_within_row(strips: &[Strip], placed: &[Beside], n: usize) -> bool {
     above.fold(f64::INFINITY, f64::min) - below.fold(f64::NEG_INFINITY, f64::max) <= DEPTH.1
 }
 
-/// The strips without those inside racks: between two ways twice as wide that are no further apart than the faces of racks,
+/// The strips without those inside racks: all along between two wider ways that are no further apart than the faces of racks,
 /// with no more than a beam to one of them.
 pub fn without_lanes(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
@@ -257,7 +258,7 @@ pub fn without_lanes(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
         let own = &strips[n];
         let near = placed[own.direction].touching(own.along, wider(own.across, DEPTH.1));
         let is_way = |other: &&Strip| {
-            overlap(other.along, own.along) > own.length() / 2.0 && other.width() >= WIDER * own.width()
+            overlap(other.along, own.along) >= ALONG * own.length() && other.width() >= WIDER * own.width()
         };
         let ways = || near.iter().map(|&n| &strips[n]).filter(is_way);
         let below = ways().map(|way| own.across[0] - way.across[1]).filter(|off| *off >= -SAME).min_by(f64::total_cmp);
