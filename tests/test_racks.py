@@ -49,6 +49,15 @@ def test_what_is_free_between_the_beams_of_a_rack_is_no_way(aisle: float) -> Non
     assert sorted(label["type"] for label in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 4
 
 
+def test_a_passage_between_two_wider_corridors_is_no_inside_of_a_rack() -> None:
+    picture = hall(24.0, 7.6)
+    for wall in (3.0, 4.5):
+        picture[int(20 * wall) + 20 : int(20 * wall) + 22, 20 + 60 : 20 + 420] = 0
+    survey = groundplan.survey(picture, resolution=0.05)
+    widths = sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("A"))
+    assert widths == pytest.approx([1.4, 3.0, 3.0], abs=0.2)
+
+
 @pytest.mark.parametrize("inside", [0, 205])
 def test_racks_far_apart_in_a_hall_are_racks_without_an_aisle_between(inside: int) -> None:
     picture = hall()

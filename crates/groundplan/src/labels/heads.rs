@@ -130,7 +130,8 @@ impl Heads<'_> {
         found
     }
 
-    /// Where the wall before both aisles of a row begins, or before one where the other leads on past it.
+    /// Where the wall before both aisles of a row begins, or before one where the other leads on past it: nothing that was seen
+    /// closes that one there.
     fn wall_of(&self, aisles: [usize; 2]) -> Option<f64> {
         let [one, two] = aisles.map(|n| self.wall(n));
         let outwards = |wall: f64| if self.side == 0 { -wall } else { wall };

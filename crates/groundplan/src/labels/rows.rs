@@ -73,6 +73,9 @@ const EMPTY: f64 = 0.1;
 /// A way beside a rack is so many times as wide as what of its inside is free, and lies beside so much of that.
 const WIDER: f64 = 1.7;
 const ALONG: f64 = 0.8;
+/// A beam is no deeper, metres; and in racks there are so many such lanes at least.
+const BEAM: f64 = 0.24;
+const LANES: usize = 2;
 /// Sides nearer than this are the same, metres.
 pub const SAME: f64 = 0.3;
 
@@ -251,7 +254,7 @@ pub fn is_within_row(strips: &[Strip], placed: &[Beside], n: usize) -> bool {
 }
 
 /// The strips without those inside racks: all along between two wider ways that are no further apart than the faces of racks,
-/// with no more than a beam to one of them.
+/// with no more than a beam to one of them, as others as wide do.
 pub fn without_lanes(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
     let is_lane = |n: usize| {
@@ -265,10 +268,16 @@ pub fn without_lanes(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
         let above = ways().map(|way| way.across[0] - own.across[1]).filter(|off| *off >= -SAME).min_by(f64::total_cmp);
         below
             .zip(above)
-            .is_some_and(|(below, above)| below.min(above) <= SHALLOW && below + own.width() + above <= DEPTH.1)
+            .is_some_and(|(below, above)| below.min(above) <= BEAM && below + own.width() + above <= DEPTH.1)
     };
     let lanes: Vec<bool> = (0..strips.len()).map(is_lane).collect();
-    strips.into_iter().zip(lanes).filter(|(_, is_lane)| !is_lane).map(|(strip, _)| strip).collect()
+    let alike = |own: &Strip| {
+        let is_like =
+            |(other, is_lane): &(&Strip, &bool)| **is_lane && other.direction == own.direction && own.is_as_wide(other);
+        strips.iter().zip(&lanes).filter(is_like).count()
+    };
+    let stays: Vec<bool> = strips.iter().zip(&lanes).map(|(own, is_lane)| !is_lane || alike(own) < LANES).collect();
+    strips.into_iter().zip(stays).filter(|(_, stays)| *stays).map(|(strip, _)| strip).collect()
 }
 
 /// Of rows that overlap the longest.

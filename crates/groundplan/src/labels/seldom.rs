@@ -11,7 +11,7 @@ const TWO: f64 = 1.5;
 /// What is open over so much of a width is as wide.
 const AS_WIDE: f64 = 0.85;
 /// It is not by chance that as many places are open when that is less likely than this.
-const UNLIKELY: f64 = 0.001;
+const UNLIKELY: f64 = 0.01;
 
 /// True when a row may be of two racks.
 pub fn is_double(row: &Row) -> bool {
@@ -41,11 +41,15 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f
         }
         open += own;
         for half in [0, 1] {
-            half_open += as_wide(&(0..count).map(|n| free(half, n) && !both[n]).collect::<Vec<_>>());
+            let flags: Vec<bool> = (0..count).map(|n| free(half, n)).collect();
+            half_open += as_wide(&flags).saturating_sub(own);
         }
         places += row.length() / width;
     }
-    let share = (half_open as f64 + 0.5) / (2.0 * places + 1.0);
+    // How often the one is empty where the other is not.
+    let half_open = half_open as f64;
+    let shut = (places - open as f64 - half_open).max(0.0);
+    let share = (half_open + 0.5) / (half_open + 2.0 * shut + 1.0);
     is_unlikely(open, places * share * share)
 }
 

@@ -141,8 +141,8 @@ impl Sketch {
 /// The plan, and the views that it is of: where ways across rows lead over the ground of racks on legs, of those that are
 /// left beside the ways.
 fn planned(evidence: &Evidence, look: &Look, views: Vec<Turned>, on_legs: &[Row]) -> (Vec<Turned>, Plan) {
-    let plan = Plan::of(evidence, look, &views, on_legs);
-    let left = carried::without_ways(evidence, &views, &plan.across, on_legs);
+    let (plan, across) = Plan::of(evidence, look, &views, on_legs);
+    let left = carried::without_ways(evidence, &views, &across, on_legs);
     if left == on_legs {
         return (views, plan);
     }
@@ -156,7 +156,7 @@ fn planned(evidence: &Evidence, look: &Look, views: Vec<Turned>, on_legs: &[Row]
         view
     });
     panes::share(&mut views);
-    let plan = Plan::of(evidence, look, &views, &left);
+    let (plan, _) = Plan::of(evidence, look, &views, &left);
     (views, plan)
 }
 
@@ -171,12 +171,11 @@ pub struct Plan {
     pub rows: Vec<Row>,
     /// The racks, of which not all are such rows.
     pub racks: Vec<Row>,
-    /// The ways with those across rows that are no wider than bays.
-    across: Vec<Strip>,
 }
 
 impl Plan {
-    fn of(evidence: &Evidence, look: &Look, views: &[Turned], on_legs: &[Row]) -> Self {
+    /// And the ways before those that may be bays were left out.
+    fn of(evidence: &Evidence, look: &Look, views: &[Turned], on_legs: &[Row]) -> (Self, Vec<Strip>) {
         let least = evidence.parameters.labels_min_width;
         let Ways { sure, over, cut, on } = corridors::find(evidence, views);
         let mut found = joined::join(views, [sure, on.clone()].concat(), least);
@@ -207,7 +206,7 @@ impl Plan {
         let gates = gates::find(evidence, look, views, &plan.strips, &plan.rows);
         let (known, more) = (plan.strips.len(), gates.len());
         plan.strips.extend(gates);
-        let across = plan.strips.clone();
+        let across = joined::apart(views, plan.strips.clone());
         plan.strips = joined::apart(views, widths::alike(views, plan.strips));
         let carried = carried::on(evidence, look, views, plan.strips.clone());
         if more > 0 || plan.strips.len() < known || carried != plan.strips {
@@ -231,8 +230,7 @@ impl Plan {
             plan = Self::new(views, narrow, threads);
             plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }
-        plan.across = across;
-        plan
+        (plan, across)
     }
 
     /// From where to where each way leads, along: to what it meets, and to walls at its ends.
@@ -275,7 +273,7 @@ impl Plan {
             extents[n][side] = place;
         }
         let rows = racks::find(views, &strips, &extents, threads);
-        Self { strips, meetings, ends, extents, rows, racks: Vec::new(), across: Vec::new() }
+        Self { strips, meetings, ends, extents, rows, racks: Vec::new() }
     }
 }
 

@@ -31,7 +31,7 @@ pub fn find<'d, A: Send>(
     ask: impl Fn(&[Label]) -> Vec<A> + Sync,
 ) -> (Vec<Label>, Vec<A>) {
     let Sketch { mut views, plan, free } = sketch;
-    let Plan { strips, meetings, ends, extents, rows: between, racks: rows, .. } = plan;
+    let Plan { strips, meetings, ends, extents, rows: between, racks: rows } = plan;
 
     let junctions: Vec<Label> = meetings
         .iter()

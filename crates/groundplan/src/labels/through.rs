@@ -6,6 +6,7 @@
 use super::beside::Beside;
 use super::chance::{Openings, SLACK};
 use super::corridors::Strip;
+use super::family;
 use super::sections::WIDTH;
 use super::seen::Seen;
 use super::turned::Turned;
@@ -36,10 +37,11 @@ pub const BETWEEN_CELLS: f64 = 0.1;
 /// What is likelier than this is no way, whatever else is one.
 const LIKELY: f64 = 0.3;
 /// What crosses all rows of a place is a way when it is as wide as other ways and less likely than this by chance; when
-/// none is known, or none between the rows' ends; and when it has another width than those. Past the ends of all rows there
-/// are ways in most halls, and LIKELY is enough.
+/// none is known; when none is between the rows' ends and it is not much narrower than the aisles beside; and when it has another
+/// width than those. Past the ends of all rows there are ways in most halls, and LIKELY is enough.
 const ALIKE: f64 = 0.05;
 const FIRST: f64 = 0.01;
+const PAST: f64 = 0.003;
 const OTHER: f64 = 0.005;
 /// The same where there are more rows at that place, as of those that lie side by side there are many, and where it has
 /// another width than those and a bay's.
@@ -56,6 +58,8 @@ pub struct Through<'a> {
     walls: Vec<bool>,
     /// For each row, which of its ends are at a wall, when that is known.
     walled: Vec<[bool; 2]>,
+    /// For each row the wider of the aisles beside it, metres, when that is known.
+    aisles: Vec<f64>,
 }
 
 impl<'a> Through<'a> {
@@ -69,7 +73,15 @@ impl<'a> Through<'a> {
         let next = |side: usize| rows.iter().map(|row| beside[&row.between[side]][side].clone()).collect();
         let (below, above) = (next(0), next(1));
         let walls = whole::are_between_halls(views, &rows.iter().map(|seen| seen.row).collect::<Vec<_>>());
-        Self { open: Openings::new(views.len(), &rows), rows, above, below, walls, walled: Vec::new() }
+        Self {
+            open: Openings::new(views.len(), &rows),
+            rows,
+            above,
+            below,
+            walls,
+            walled: Vec::new(),
+            aisles: Vec::new(),
+        }
     }
 
     /// The ways, where those of known widths are, each through one row after another; and for each direction it is told
@@ -82,6 +94,8 @@ impl<'a> Through<'a> {
     ) -> Vec<Strip> {
         let mut found_within = vec![false; widths.len()];
         self.walled = self.rows.iter().map(|seen| [0, 1].map(|side| seen.is_at_wall(strips, side))).collect();
+        let widest = |seen: &Seen| seen.between.map(|n| strips[n].width()).into_iter().fold(0.0, f64::max);
+        self.aisles = self.rows.iter().map(widest).collect();
         let mut left = Vec::new();
         for n in 0..self.rows.len() {
             for &ends in self.open.of(n) {
@@ -216,11 +230,17 @@ impl<'a> Through<'a> {
             (false, _) => SOME,
             (true, _) if self.is_past_ends(common) => LIKELY,
             (true, true) => ALIKE,
-            (true, false) if known.is_empty() || !is_told_within(other.direction) => FIRST,
+            (true, false) if known.is_empty() => FIRST,
+            (true, false) if !is_told_within(other.direction) && self.is_as_aisles(common) => PAST,
             (true, false) if self.rows[common.rows[0]].is_as_bays(common.ends) => SOME,
             (true, false) => OTHER,
         };
         common.chance < limit
+    }
+
+    /// True when it is no narrower than what leads from aisle to aisle.
+    fn is_as_aisles(&self, common: &Common) -> bool {
+        common.rows.iter().all(|&n| common.width() + BETWEEN_CELLS >= family::LED_TO * self.aisles[n])
     }
 
     /// True when it lies between the ends of all its rows, which are in line, and a wall that ends them.

@@ -89,7 +89,7 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
             let is_no_bay = || {
                 !is_told_within
                     && (view.pitch.map_or_else(
-                        || width > LONGEST || through.is_in_every_row(&place, own, width),
+                        || through.is_no_bay(own, width) || through.is_in_every_row(&place, own, width),
                         |pitch| !is_as_bays(width, pitch),
                     ) || place.is_open_through(&strips, own, width))
             };
@@ -126,6 +126,12 @@ impl Through {
             }
         }
         made
+    }
+
+    /// True when it is longer than beams are, and nothing else as wide leads through its rows alone: bays recur.
+    fn is_no_bay(&self, own: &Passing, width: f64) -> bool {
+        let is_as_wide = |other: &&f64| (*other - width).abs() <= ALIKE * width;
+        width > LONGEST && own.rows.iter().all(|&row| self.alone[row].iter().filter(is_as_wide).count() <= 1)
     }
 
     /// True when as many ways as wide as one lead through each of the rows of its place, and none through several: shelves
