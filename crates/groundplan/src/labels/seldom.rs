@@ -10,6 +10,8 @@ use super::turned::Turned;
 const TWO: f64 = 1.5;
 /// What is open over so much of a width is as wide.
 const AS_WIDE: f64 = 0.85;
+/// Fewer such rows tell nothing.
+const ROWS: usize = 2;
 /// It is not by chance that as many places are open when that is less likely than this.
 const UNLIKELY: f64 = 0.01;
 
@@ -18,11 +20,15 @@ pub fn is_double(row: &Row) -> bool {
     row.depth() >= TWO
 }
 
-/// True when each of some rows side by side that are of two racks is open at a place of a width, and all are at as many as
+/// True when each of several rows side by side that are of two racks is open at a place of a width, and all are at as many as
 /// they would hardly be by chance if each rack were empty where it is, whatever the other is.
 pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f64) -> bool {
     let (mut half_open, mut open, mut places) = (0, 0, 0.0);
-    for row in rows.filter(|row| is_double(row)) {
+    let rows: Vec<&Row> = rows.filter(|row| is_double(row)).collect();
+    if rows.len() < ROWS {
+        return false;
+    }
+    for row in rows {
         let columns = view.column(row.along[0])..view.column(row.along[1]);
         let middle = f64::midpoint(row.across[0], row.across[1]);
         let blocked = |low: f64, high: f64| view.blocked_where(columns.clone(), low, high, |share| share > LEFT);
