@@ -27,8 +27,8 @@ impl Run {
     }
 }
 
-/// Where runs are is noted for every so many pixels.
-const STEP: usize = 64;
+/// Where runs are is noted for every so many pixels: for every 64 it took 75 MiB more at 1600 megapixels.
+const STEP: usize = 256;
 
 /// The runs of a raster in their order, none on its border. Pixels in no run have the number 0.
 pub struct Runs {
