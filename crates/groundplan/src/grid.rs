@@ -194,8 +194,7 @@ impl<'a> Grid<'a> {
     pub(crate) fn pixel_at(&self, point: [f64; 2]) -> Option<[usize; 2]> {
         let [x, y] = self.frame.to_pixels(point);
         let is_inside = (0.0..self.frame.width as f64).contains(&x) && (0.0..self.frame.height as f64).contains(&y);
-        // By way of 32 bits, which is a step less for most machines.
-        is_inside.then_some([x as u32 as usize, y as u32 as usize])
+        is_inside.then_some([whole(x), whole(y)])
     }
 
     pub(crate) fn state_of(&self, [x, y]: [usize; 2]) -> State {
@@ -224,6 +223,12 @@ pub(crate) fn rounded(value: f64) -> f64 {
     let rounded = whole + f64::from(u8::from(rest >= 0.5)) - f64::from(u8::from(rest <= -0.5));
     // From 2^52 on every float is whole.
     if value.abs() < 4_503_599_627_370_496.0 { rounded } else { value }
+}
+
+/// The whole part of what is no less than zero, as an index; no more than 2^32. By way of 32 bits, which is a step less for
+/// most machines than 64 are.
+pub(crate) fn whole(value: f64) -> usize {
+    value as u32 as usize
 }
 
 /// An angle rounded to a billionth of a radian: a micrometre at a kilometre.

@@ -1,5 +1,6 @@
 //! Which of a direction's lines a place lies on: asked of every edge pixel, most of which are on none.
 
+use crate::grid::whole;
 use std::ops::Range;
 
 /// Lines of one direction, and how near to one a place lies on it.
@@ -37,8 +38,7 @@ impl<'a> OnLine<'a> {
     /// The lines that a place across lies on.
     pub fn at(&self, place: f64) -> Range<usize> {
         let step = self.step(place);
-        // By way of 32 bits, which is a step less for most machines.
-        let lines = if step >= 0.0 { self.steps.get(step as u32 as usize).copied() } else { None };
+        let lines = if step >= 0.0 { self.steps.get(whole(step)).copied() } else { None };
         let [mut from, mut to] = lines.unwrap_or_default().map(|n| n as usize);
         while from < to && self.offsets[from] < place - self.near {
             from += 1;

@@ -4,7 +4,7 @@ use super::Evidence;
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
 use super::look::Look;
-use super::passing;
+use super::passing::{self, Place};
 use super::rows::Row;
 use super::sections::{Columns, WIDTH};
 use super::seen::Seen;
@@ -34,8 +34,9 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
         let (between, other) = (row.between?, crossing(views, row.direction)?);
         let view = &views[row.direction];
         let middles = between.map(|n| strips[n].middle());
+        let widest = between.map(|n| strips[n].width()).into_iter().fold(0.0, f64::max);
         let columns = Columns::new(look, &evidence.grid.frame, [view, other], reaching, view.pitch);
-        Some(Seen { own: row.along, row: reaching, columns, views: [view, other], between, middles })
+        Some(Seen { own: row.along, row: reaching, columns, views: [view, other], between, middles, widest })
     });
     for row in &seen {
         for way in row.columns.ways() {
@@ -50,10 +51,11 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let between_racks = through.between_racks();
     let is_known = |strip: &&Strip| !strip.bays;
     let known: Vec<Strip> = in_line(gates.clone()).into_iter().chain(strips.iter().filter(is_known).cloned()).collect();
-    let staggered = LazyCell::new(|| Widths::of_staggered(views, &known));
+    let places = LazyCell::new(|| Place::of_each(views, &known));
+    let staggered = LazyCell::new(|| Widths::of_staggered(views, &known, &places));
     let mut sure = Widths::of(views, strips.iter().filter(is_known).chain(&gates));
-    let within = LazyCell::new(|| passing::are_within(views, &known));
-    let through = through.find(strips, &mut sure, &within);
+    let within = LazyCell::new(|| passing::are_within(views, &places));
+    let through = through.find(strips, &mut sure, |direction| within[direction]);
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
     let open = LazyCell::new(|| passing::open_through(views, &known, &doubtful));
     let is_told = |n: usize, gate: &Strip| {

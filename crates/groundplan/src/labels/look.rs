@@ -1,6 +1,6 @@
 //! Looking along straight lines over the map, from sample to sample, over what is all alike in one leap.
 
-use crate::grid::{Grid, State};
+use crate::grid::{Grid, State, whole};
 use crate::tiles::{SIDE, Tiles};
 use std::ops::Range;
 
@@ -59,8 +59,8 @@ impl<'a> Look<'a> {
         match *lanes {
             [one] => self.cells_of([one], step, first, cells),
             [one, two] => self.cells_of([one, two], step, first, cells),
-            [one, two, three, ..] => self.cells_of([one, two, three], step, first, cells),
-            [] => {}
+            [one, two, three] => self.cells_of([one, two, three], step, first, cells),
+            _ => debug_assert!(lanes.is_empty(), "{} lanes, {LANES} at most", lanes.len()),
         }
     }
 
@@ -228,8 +228,7 @@ impl Alike {
                 least = least.min((if self.step[axis] > 0 { above } else { below }) * self.pace[axis]);
             }
         }
-        // By way of 32 bits, which is a step less for most machines.
-        (least - SLACK).max(0.0) as u32 as usize + 1
+        whole(f64::from(least - SLACK)) + 1
     }
 }
 

@@ -95,10 +95,10 @@ impl Passing {
     }
 }
 
-/// For each direction, whether some of its strips lead through rows of a place between their ends.
-pub fn are_within(views: &[Turned], strips: &[Strip]) -> Vec<bool> {
+/// For each direction, whether some of its strips lead through rows of one of the places between their ends.
+pub fn are_within(views: &[Turned], places: &[Place]) -> Vec<bool> {
     let mut are = vec![false; views.len()];
-    for Place { views: [_, other], passing, .. } in Place::of_each(views, strips) {
+    for Place { views: [_, other], passing, .. } in places {
         are[other.direction] |= passing.iter().any(|own| own.is_within);
     }
     are

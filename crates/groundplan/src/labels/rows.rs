@@ -248,36 +248,37 @@ pub fn is_within_row(strips: &[Strip], placed: &[Beside], n: usize) -> bool {
     let beside =
         |other: &&Strip| overlap(other.along, own.along) > own.length() / 2.0 && other.length() > LONGER * own.length();
     let strips = || near.iter().map(|&n| &strips[n]).filter(beside);
-    let below = strips().map(|s| s.across[1]).filter(|v| *v <= own.across[0] + SAME);
-    let above = strips().map(|s| s.across[0]).filter(|v| *v >= own.across[1] - SAME);
-    above.fold(f64::INFINITY, f64::min) - below.fold(f64::NEG_INFINITY, f64::max) <= DEPTH.1
+    let [below, above] = facing(own, strips());
+    above - below <= DEPTH.1
+}
+
+/// Where the nearest of some strips beside another end and begin, below it and above it; nowhere where there are none.
+fn facing<'a>(own: &Strip, strips: impl Iterator<Item = &'a Strip> + Clone) -> [f64; 2] {
+    let below = strips.clone().map(|strip| strip.across[1]).filter(|v| *v <= own.across[0] + SAME);
+    let above = strips.map(|strip| strip.across[0]).filter(|v| *v >= own.across[1] - SAME);
+    [below.fold(f64::NEG_INFINITY, f64::max), above.fold(f64::INFINITY, f64::min)]
 }
 
 /// The strips without those inside racks: all along between two wider ways that are no further apart than the faces of racks,
 /// with no more than a beam to one of them, as others as wide do.
 pub fn without_lanes(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
-    let is_lane = |n: usize| {
-        let own = &strips[n];
+    let is_lane = |own: &&Strip| {
         let near = placed[own.direction].touching(own.along, wider(own.across, DEPTH.1));
         let is_way = |other: &&Strip| {
             overlap(other.along, own.along) >= ALONG * own.length() && other.width() >= WIDER * own.width()
         };
-        let ways = || near.iter().map(|&n| &strips[n]).filter(is_way);
-        let below = ways().map(|way| own.across[0] - way.across[1]).filter(|off| *off >= -SAME).min_by(f64::total_cmp);
-        let above = ways().map(|way| way.across[0] - own.across[1]).filter(|off| *off >= -SAME).min_by(f64::total_cmp);
-        below
-            .zip(above)
-            .is_some_and(|(below, above)| below.min(above) <= BEAM && below + own.width() + above <= DEPTH.1)
+        let [below, above] = facing(own, near.iter().map(|&n| &strips[n]).filter(is_way));
+        above - below <= DEPTH.1 && (own.across[0] - below).min(above - own.across[1]) <= BEAM
     };
-    let lanes: Vec<bool> = (0..strips.len()).map(is_lane).collect();
-    let alike = |own: &Strip| {
-        let is_like =
-            |(other, is_lane): &(&Strip, &bool)| **is_lane && other.direction == own.direction && own.is_as_wide(other);
-        strips.iter().zip(&lanes).filter(is_like).count()
+    let lanes: Vec<&Strip> = strips.iter().filter(is_lane).collect();
+    let is_inside = |own: &Strip| {
+        let is_alike = |other: &&&Strip| other.direction == own.direction && own.is_as_wide(other);
+        lanes.contains(&own) && lanes.iter().filter(is_alike).count() >= LANES
     };
-    let stays: Vec<bool> = strips.iter().zip(&lanes).map(|(own, is_lane)| !is_lane || alike(own) < LANES).collect();
-    strips.into_iter().zip(stays).filter(|(_, stays)| *stays).map(|(strip, _)| strip).collect()
+    let stays: Vec<bool> = strips.iter().map(|own| !is_inside(own)).collect();
+    let mut stays = stays.into_iter();
+    strips.into_iter().filter(|_| stays.next().unwrap_or(true)).collect()
 }
 
 /// Of rows that overlap the longest.

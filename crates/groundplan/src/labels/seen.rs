@@ -28,6 +28,8 @@ pub struct Seen<'a> {
     /// The two corridors beside it, and the places across of their middles.
     pub between: [usize; 2],
     pub middles: [f64; 2],
+    /// How wide the wider of the two is, metres.
+    pub widest: f64,
 }
 
 impl Seen<'_> {

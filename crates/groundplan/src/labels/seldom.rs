@@ -39,21 +39,22 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f
             let within = runs(flags, true).into_iter().filter(|&(from, to)| from > 0 && to < count);
             within.map(|(from, to)| (to - from) / least).sum::<usize>()
         };
-        let free = |half: usize, n: usize| !blocked[half].get(n);
-        let both: Vec<bool> = (0..count).map(|n| free(0, n) && free(1, n)).collect();
+        let halves = blocked.map(|blocked| (0..count).map(|n| !blocked.get(n)).collect::<Vec<bool>>());
+        let both: Vec<bool> = halves[0].iter().zip(&halves[1]).map(|(one, two)| *one && *two).collect();
         let own = as_wide(&both);
         if own == 0 {
             return false;
         }
         open += own;
-        for half in [0, 1] {
-            let flags: Vec<bool> = (0..count).map(|n| free(half, n)).collect();
-            half_open += as_wide(&flags).saturating_sub(own);
-        }
+        half_open += halves.iter().map(|half| as_wide(half).saturating_sub(own)).sum::<usize>();
         places += row.length() / width;
     }
+    is_more_than_chance(open, half_open as f64, places)
+}
+
+/// True when both racks would hardly be empty at so many of all places by chance, where one of them is at so many more.
+fn is_more_than_chance(open: usize, half_open: f64, places: f64) -> bool {
     // How often the one is empty where the other is not.
-    let half_open = half_open as f64;
     let shut = (places - open as f64 - half_open).max(0.0);
     let share = (half_open + 0.5) / (half_open + 2.0 * shut + 1.0);
     is_unlikely(open, places * share * share)
@@ -68,4 +69,26 @@ fn is_unlikely(count: usize, expected: f64) -> bool {
         term *= expected / (n + 1) as f64;
     }
     1.0 - fewer < UNLIKELY
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_as_unlikely_as_the_distribution_says() {
+        // At 0.1 two or more have a chance of 0.0047, one or more of 0.095; at 1 five or more of 0.0037, four or more of 0.019.
+        for (count, expected, is_so) in
+            [(0, 0.1, false), (1, 0.1, false), (2, 0.1, true), (4, 1.0, false), (5, 1.0, true)]
+        {
+            assert_eq!(is_unlikely(count, expected), is_so, "{count} of {expected}");
+        }
+    }
+
+    #[test]
+    fn where_one_of_two_racks_is_seldom_empty_both_are_not_by_chance() {
+        assert!(is_more_than_chance(2, 2.0, 40.0));
+        assert!(!is_more_than_chance(2, 30.0, 40.0));
+        assert!(!is_more_than_chance(0, 2.0, 40.0));
+    }
 }

@@ -142,7 +142,10 @@ impl Sketch {
 /// left beside the ways.
 fn planned(evidence: &Evidence, look: &Look, views: Vec<Turned>, on_legs: &[Row]) -> (Vec<Turned>, Plan) {
     let (plan, across) = Plan::of(evidence, look, &views, on_legs);
-    let left = carried::without_ways(evidence, &views, &across, on_legs);
+    if on_legs.is_empty() {
+        return (views, plan);
+    }
+    let left = carried::without_ways(evidence, &views, &joined::apart(&views, across), on_legs);
     if left == on_legs {
         return (views, plan);
     }
@@ -174,7 +177,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// And the ways before those that may be bays were left out.
+    /// And the ways before those that may be bays, or lie within others, were left out.
     fn of(evidence: &Evidence, look: &Look, views: &[Turned], on_legs: &[Row]) -> (Self, Vec<Strip>) {
         let least = evidence.parameters.labels_min_width;
         let Ways { sure, over, cut, on } = corridors::find(evidence, views);
@@ -206,7 +209,7 @@ impl Plan {
         let gates = gates::find(evidence, look, views, &plan.strips, &plan.rows);
         let (known, more) = (plan.strips.len(), gates.len());
         plan.strips.extend(gates);
-        let across = joined::apart(views, plan.strips.clone());
+        let across = plan.strips.clone();
         plan.strips = joined::apart(views, widths::alike(views, plan.strips));
         let carried = carried::on(evidence, look, views, plan.strips.clone());
         if more > 0 || plan.strips.len() < known || carried != plan.strips {

@@ -13,7 +13,6 @@ use super::turned::Turned;
 use super::whole;
 use super::widths::Widths;
 use crate::ends::{overlap, shared};
-use std::cell::LazyCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What is open in some rows, one beside another.
@@ -58,8 +57,6 @@ pub struct Through<'a> {
     walls: Vec<bool>,
     /// For each row, which of its ends are at a wall, when that is known.
     walled: Vec<[bool; 2]>,
-    /// For each row the wider of the aisles beside it, metres, when that is known.
-    aisles: Vec<f64>,
 }
 
 impl<'a> Through<'a> {
@@ -73,29 +70,14 @@ impl<'a> Through<'a> {
         let next = |side: usize| rows.iter().map(|row| beside[&row.between[side]][side].clone()).collect();
         let (below, above) = (next(0), next(1));
         let walls = whole::are_between_halls(views, &rows.iter().map(|seen| seen.row).collect::<Vec<_>>());
-        Self {
-            open: Openings::new(views.len(), &rows),
-            rows,
-            above,
-            below,
-            walls,
-            walled: Vec::new(),
-            aisles: Vec::new(),
-        }
+        Self { open: Openings::new(views.len(), &rows), rows, above, below, walls, walled: Vec::new() }
     }
 
-    /// The ways, where those of known widths are, each through one row after another; and for each direction it is told
-    /// whether some of these lead through rows between their ends.
-    pub fn find(
-        mut self,
-        strips: &[Strip],
-        widths: &mut [Widths],
-        known_within: &LazyCell<Vec<bool>, impl FnOnce() -> Vec<bool>>,
-    ) -> Vec<Strip> {
+    /// The ways, where those of known widths are, each through one row after another; `known_within` tells of each direction
+    /// whether some of those lead through rows between their ends.
+    pub fn find(mut self, strips: &[Strip], widths: &mut [Widths], known_within: impl Fn(usize) -> bool) -> Vec<Strip> {
         let mut found_within = vec![false; widths.len()];
         self.walled = self.rows.iter().map(|seen| [0, 1].map(|side| seen.is_at_wall(strips, side))).collect();
-        let widest = |seen: &Seen| seen.between.map(|n| strips[n].width()).into_iter().fold(0.0, f64::max);
-        self.aisles = self.rows.iter().map(widest).collect();
         let mut left = Vec::new();
         for n in 0..self.rows.len() {
             for &ends in self.open.of(n) {
@@ -113,7 +95,7 @@ impl<'a> Through<'a> {
             left.sort_by(|a, b| a.chance.total_cmp(&b.chance));
             let known = ways.len();
             for common in &left {
-                let is_told = |direction: usize| found_within[direction] || known_within[direction];
+                let is_told = |direction: usize| found_within[direction] || known_within(direction);
                 if self.is_way(common, widths, is_told) && !is_taken(&taken, common) {
                     common.rows.iter().for_each(|&row| taken[row].push(common.ends));
                     ways.push(common.clone());
@@ -240,7 +222,7 @@ impl<'a> Through<'a> {
 
     /// True when it is no narrower than what leads from aisle to aisle.
     fn is_as_aisles(&self, common: &Common) -> bool {
-        common.rows.iter().all(|&n| common.width() + BETWEEN_CELLS >= family::LED_TO * self.aisles[n])
+        common.rows.iter().all(|&n| common.width() + BETWEEN_CELLS >= family::LED_TO * self.rows[n].widest)
     }
 
     /// True when it lies between the ends of all its rows, which are in line, and a wall that ends them.

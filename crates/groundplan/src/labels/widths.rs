@@ -37,11 +37,11 @@ impl Widths {
 
     /// Of those ways across rows, for each direction, that lead through some rows of a place between their ends and not
     /// through those beside.
-    pub fn of_staggered(views: &[Turned], strips: &[Strip]) -> Vec<Self> {
+    pub fn of_staggered(views: &[Turned], strips: &[Strip], places: &[Place]) -> Vec<Self> {
         let mut all: Vec<Self> = views.iter().map(|_| Self::default()).collect();
-        for Place { views: [_, other], passing, .. } in Place::of_each(views, strips) {
+        for Place { views: [_, other], passing, .. } in places {
             let is_staggered = |own: &Passing| own.is_within && !own.next.is_empty() && !own.is_led_on;
-            let ways = strips.iter().zip(&passing).filter(|(_, own)| is_staggered(own));
+            let ways = strips.iter().zip(passing).filter(|(_, own)| is_staggered(own));
             all[other.direction].0.extend(ways.map(|(way, _)| way.width()));
         }
         all
@@ -89,7 +89,7 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
             let is_no_bay = || {
                 !is_told_within
                     && (view.pitch.map_or_else(
-                        || through.is_no_bay(own, width) || through.is_in_every_row(&place, own, width),
+                        || through.is_longer_than_bays(own, width) || through.is_in_every_row(&place, own, width),
                         |pitch| !is_as_bays(width, pitch),
                     ) || place.is_open_through(&strips, own, width))
             };
@@ -129,7 +129,7 @@ impl Through {
     }
 
     /// True when it is longer than beams are, and nothing else as wide leads through its rows alone: bays recur.
-    fn is_no_bay(&self, own: &Passing, width: f64) -> bool {
+    fn is_longer_than_bays(&self, own: &Passing, width: f64) -> bool {
         let is_as_wide = |other: &&f64| (*other - width).abs() <= ALIKE * width;
         width > LONGEST && own.rows.iter().all(|&row| self.alone[row].iter().filter(is_as_wide).count() <= 1)
     }

@@ -5,7 +5,7 @@ use super::super::recall::{Key, Recall};
 use super::islands::{self, Islands};
 use crate::bands::map_bands;
 use crate::bits::{Bits, WORD, Wanted, lowest};
-use crate::grid::{Grid, State};
+use crate::grid::{Grid, State, whole};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -106,8 +106,7 @@ impl Raster {
     /// The pixel that holds a place, nothing outside.
     pub fn at(&self, [x, y]: [f64; 2]) -> Option<usize> {
         let (x, y) = (x + 0.5, y + 0.5);
-        // By way of 32 bits, which is a step less for most machines.
-        let (column, row) = (x as u32 as usize, y as u32 as usize);
+        let (column, row) = (whole(x), whole(y));
         let inside = x >= 0.0 && y >= 0.0 && column < self.width && row < self.height;
         inside.then(|| row * self.width + column)
     }

@@ -43,6 +43,7 @@ impl Squared {
     /// The same where squares fit in 16 bits, greater heights cut off: of each pixel its own square, or what lies to either
     /// side, as long as something so far off can be nearer. And the greatest.
     fn low(&mut self, heights: &[u16], squared: &mut Vec<u32>) -> u16 {
+        // The zeros at both ends reach as far as is looked: no chunk is ever cut short.
         for (to, &height) in self.squares[FARTHEST..].iter_mut().zip(heights) {
             *to = height.min(HIGHEST).pow(2) as i16;
         }
