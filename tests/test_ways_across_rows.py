@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -251,6 +253,53 @@ def test_one_way_in_each_row_at_a_place_of_its_own_is_narrower_than_those_at_the
     survey = groundplan.survey(picture, resolution=RESOLUTION)
     across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
     assert sorted(across) == pytest.approx([1.8] * 5 + [3.2] * 2, abs=0.15)
+
+
+@pytest.mark.parametrize("ways", [(380, 380, 250, 120), (100, 330, 330, 200), (420, 180, 300, 90)])
+def test_a_gap_in_each_row_is_a_way_where_hardly_a_shelf_is_empty(ways: tuple[int, ...]) -> None:
+    # Four rows of 1.15 m by 28 m that begin at a wall, a gap of 2.1 m in each; a way of 4.1 m past their ends.
+    picture = hall(560 + 82, 4 * 23 + 5 * 46)
+    for row, way in enumerate(ways):
+        low = 20 + 46 + row * 69
+        picture[low : low + 23, 20 : 20 + 560] = 0
+        picture[low : low + 23, 20 + way : 20 + way + 42] = 254
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
+    gaps = len(ways) - sum(one == two for one, two in itertools.pairwise(ways))
+    assert sorted(across) == pytest.approx([2.1] * gaps + [4.1], abs=0.15)
+
+
+def rows_on_posts(seed: int, ways: tuple[int, ...], gap: int) -> Picture:
+    """Rows of 14 bays of 3 m between posts, the goods of three in ten missing, each with a gap after so many bays."""
+    draws = np.random.default_rng(seed)
+    picture = hall(840 + gap + 180, len(ways) * 40 + (len(ways) + 1) * AISLE)
+    for row, bays in enumerate(ways):
+        low = 20 + AISLE + row * (AISLE + 40)
+        for start, count in ((0, bays), (60 * bays + gap, 14 - bays)):
+            for post in range(count + 1):
+                x = 20 + 90 + start + 60 * post
+                for face in (0, 16, 22, 38):
+                    picture[low + face : low + face + 2, x - 1 : x + 1] = 0
+                for at, goods in ((3, 1), (3, 23), (31, 1), (31, 23)) if post < count else ():
+                    # At the gap there are some on either side.
+                    if draws.random() < 0.7 or post == (count - 1 if start == 0 else 0):
+                        picture[low + goods : low + goods + 16, x + at : x + at + 26] = 0
+    return picture
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_way_narrower_than_a_bay_is_told_by_posts_that_are_out_of_step_beyond_it(seed: int) -> None:
+    survey = groundplan.survey(rows_on_posts(seed, (7,), 50), resolution=RESOLUTION)
+    across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
+    assert sorted(across) == pytest.approx([2.4] + [4.5] * 2, abs=0.15)
+
+
+@pytest.mark.parametrize("ways", [(7,), (9, 6)])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_bay_in_step_with_the_others_is_no_way(seed: int, ways: tuple[int, ...]) -> None:
+    survey = groundplan.survey(rows_on_posts(seed, ways, 60), resolution=RESOLUTION)
+    across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
+    assert sorted(across) == pytest.approx([4.5] * 2, abs=0.2)
 
 
 def pallets(ends: tuple[int, int], count: int, taken: list[set[int]], off: int = 0) -> Picture:

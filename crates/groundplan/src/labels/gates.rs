@@ -8,6 +8,7 @@ use super::passing::{self, Place};
 use super::rows::Row;
 use super::sections::{Columns, WIDTH};
 use super::seen::Seen;
+use super::step::{self, Section};
 use super::thin;
 use super::through::{BETWEEN_CELLS, Through};
 use super::turned::Turned;
@@ -23,8 +24,15 @@ const IN_LINE: (f64, f64) = (0.7, 0.5);
 /// Directions are square to each other but for an angle of this sine.
 const SQUARE: f64 = 0.05;
 
-/// The ways through the rows between corridors, as strips of the direction that crosses them.
-pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], rows: &[Row]) -> Vec<Strip> {
+/// Ways through rows, as strips of the direction that crosses them.
+pub struct Gates {
+    pub ways: Vec<Strip>,
+    /// Others that posts tell from bays, as wide as they may be.
+    pub out_of_step: Vec<Strip>,
+}
+
+/// The ways through the rows between corridors.
+pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], rows: &[Row]) -> Gates {
     let (mut gates, mut doubtful) = (Vec::new(), Vec::new());
     let placed = placed(views, strips.iter().map(Strip::place));
     let widest = corridors::widest(strips);
@@ -44,6 +52,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
             found.extend(row.gate(way));
         }
     }
+    let mut out_of_step: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, &seen)).collect();
     let through = Through::new(views, seen);
     for (gate, is_doubtful) in through.at_walls(strips, &placed) {
         if is_doubtful { &mut doubtful } else { &mut gates }.push(gate);
@@ -60,7 +69,8 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let open = LazyCell::new(|| passing::open_through(views, &known, &doubtful));
     let is_told = |n: usize, gate: &Strip| {
         let widths = &sure[gate.direction];
-        widths.is_empty() || widths.have(gate.width(), None) || (!within[gate.direction] && open[n])
+        let pitch = crossing(views, gate.direction).and_then(|view| view.pitch);
+        widths.is_empty() || widths.have(gate.width() + BETWEEN_CELLS, pitch) || (!within[gate.direction] && open[n])
     };
     gates.extend(doubtful.iter().enumerate().filter(|(n, gate)| is_told(*n, gate)).map(|(_, gate)| gate.clone()));
     // Where no row beside tells a bay from a way, a way is as wide as others of the place; and where ways are staggered from
@@ -74,7 +84,20 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     gates.retain(|gate| !through.iter().any(|way| is_in(gate, way)));
     gates.extend(through);
     gates.extend(thin::gates(views, strips));
-    in_line(gates)
+    let ways = in_line(gates);
+    out_of_step.retain(|gate| !ways.iter().any(|way| is_in(gate, way)));
+    Gates { ways, out_of_step: in_line(out_of_step) }
+}
+
+/// The ways through a direction's rows that are out of step with their bays.
+fn between_posts(view: &Turned, seen: &[Seen]) -> Vec<Strip> {
+    let Some(pitch) = view.pitch else { return Vec::new() };
+    let rows = seen.iter().filter(|row| row.row.direction == view.direction);
+    let sections = rows.flat_map(|row| row.columns.beside_racks().into_iter().map(move |section| (row, section)));
+    let (rows, sections): (Vec<&Seen>, Vec<Section>) = sections.unzip();
+    let are_out = step::are_out(&sections, pitch);
+    let out = rows.into_iter().zip(sections).zip(are_out).filter(|(_, is_out)| *is_out);
+    out.filter_map(|((row, section), _)| row.gate(section.ends)).collect()
 }
 
 /// True when one strip lies in another of its direction.

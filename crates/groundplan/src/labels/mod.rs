@@ -60,6 +60,7 @@ mod shut;
 mod sided;
 mod sketch;
 mod squares;
+mod step;
 mod stretches;
 mod strips;
 mod summed;

@@ -47,19 +47,19 @@ impl<'a> Place<'a> {
 }
 
 impl Place<'_> {
-    /// True when the rows that something passes through are of two racks each, and with those side by side with them open
-    /// more often than by chance.
+    /// True when the rows that something passes through are with those side by side with them open more often than by chance:
+    /// of two racks each, or hardly open elsewhere.
     pub fn is_open_through(&self, strips: &[Strip], own: &Passing, width: f64) -> bool {
         let is_as_wide = |&aisle: &usize| width >= NARROWER * strips[self.aisles[aisle]].width();
         let may_be_led_through = |&row: &usize| {
             let (row, between) = &self.rows[row];
             seldom::is_double(row) && between.iter().all(is_as_wide)
         };
-        own.rows.iter().all(may_be_led_through)
-            && own.rows.first().is_some_and(|&row| {
-                let rows = self.rows_with(row).into_iter().map(|row| &self.rows[row].0);
-                seldom::are_open(self.views[0], rows, width)
-            })
+        let Some(&first) = own.rows.first() else { return false };
+        let rows = self.rows_with(first);
+        let rows = || rows.iter().map(|&row| &self.rows[row].0);
+        own.is_within && seldom::are_full_elsewhere(self.views[0], rows(), width)
+            || own.rows.iter().all(may_be_led_through) && seldom::are_open(self.views[0], rows(), width)
     }
 
     /// The rows of the part of the place that a row is of: those that lie one beside another, walls between halls left out.

@@ -8,6 +8,7 @@ use super::look::Look;
 use super::rows::{Row, SHORTEST};
 use super::runs::runs;
 use super::shares::Shares;
+use super::step::{BAYS, Section};
 use super::turned::Turned;
 use crate::ends::wider;
 use crate::grid::Frame;
@@ -107,6 +108,22 @@ impl<'a> Columns<'a> {
     pub fn between_racks(&self) -> Vec<[f64; 2]> {
         let is_rack = |n: usize| self.closing(n) != Closing::Open;
         self.gaps(|from, to| self.is_free_way(from, to, self.view.cell) && is_rack(from) && is_rack(to))
+    }
+
+    /// The same, each with what is free along the faces beside it, where posts may recur.
+    pub fn beside_racks(&self) -> Vec<Section> {
+        let Some(pitch) = self.pitch else { return Vec::new() };
+        let free = [0, 1].into_iter().flat_map(|face| {
+            let stands: Vec<bool> = self.faces.iter().map(|faces| faces[face]).collect();
+            runs(&stands, false)
+        });
+        let free: Vec<[f64; 2]> = free.map(|(from, to)| [self.place(from), self.place(to)]).collect();
+        let within = |low: f64, high: f64| free.iter().copied().filter(move |[from, to]| *from >= low && *to <= high);
+        let section = |ends: [f64; 2]| {
+            let [below, above] = [within(ends[0] - BAYS * pitch, ends[0]), within(ends[1], ends[1] + BAYS * pitch)];
+            Section { ends, beside: [below.collect(), above.collect()] }
+        };
+        self.between_racks().into_iter().map(section).collect()
     }
 
     /// What lies between two uprights, in order: its own ends are none that a way could lie between.

@@ -1,5 +1,5 @@
-//! Whether rows of two racks back to back are open from aisle to aisle more often than chance makes: where the one is empty
-//! the other seldom is as well, unless a way leads through both.
+//! Whether rows of racks are open from aisle to aisle more often than chance makes: where the one of two racks back to back is
+//! empty the other seldom is as well, unless a way leads through both; and where hardly a shelf is empty no whole bay is.
 
 use super::rows::Row;
 use super::runs::runs;
@@ -10,10 +10,16 @@ use super::turned::Turned;
 const TWO: f64 = 1.5;
 /// What is open over so much of a width is as wide.
 const AS_WIDE: f64 = 0.85;
+/// So many cells on either side of what is open are of its ends.
+const BETWEEN_CELLS: usize = 2;
 /// Fewer such rows tell nothing.
 const ROWS: usize = 2;
-/// It is not by chance that as many places are open when that is less likely than this.
+/// It is not by chance that as many places are open when that is less likely than this; nor where little else of the rows is
+/// open when that is less likely than this.
 const UNLIKELY: f64 = 0.01;
+const UNLIKELY_IN_FULL: f64 = 0.1;
+/// What is open of a half for less, metres, is between its goods.
+const SHELF: f64 = 0.5;
 
 /// True when a row may be of two racks.
 pub fn is_double(row: &Row) -> bool {
@@ -29,18 +35,14 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f
         return false;
     }
     for row in rows {
-        let columns = view.column(row.along[0])..view.column(row.along[1]);
-        let middle = f64::midpoint(row.across[0], row.across[1]);
-        let blocked = |low: f64, high: f64| view.blocked_where(columns.clone(), low, high, |share| share > LEFT);
-        let blocked = [blocked(row.across[0], middle), blocked(middle, row.across[1])];
+        let halves = open_halves(view, row);
+        let count = halves[0].len();
         let least = (AS_WIDE * width / view.cell).ceil().max(1.0) as usize;
-        let count = columns.len();
         let as_wide = |flags: &[bool]| {
             let within = runs(flags, true).into_iter().filter(|&(from, to)| from > 0 && to < count);
             within.map(|(from, to)| (to - from) / least).sum::<usize>()
         };
-        let halves = blocked.map(|blocked| (0..count).map(|n| !blocked.get(n)).collect::<Vec<bool>>());
-        let both: Vec<bool> = halves[0].iter().zip(&halves[1]).map(|(one, two)| *one && *two).collect();
+        let both = both_open(&halves);
         let own = as_wide(&both);
         if own == 0 {
             return false;
@@ -52,23 +54,66 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f
     is_more_than_chance(open, half_open as f64, places)
 }
 
+/// True when rows side by side are open at places of a width, and so little else of each one's halves is that as many would
+/// hardly be by chance: no shelves are empty there. What lies past the rows' ends is open as well, so that a gap or two in short
+/// rows tell nothing.
+pub fn are_full_elsewhere<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f64) -> bool {
+    let (mut open, mut free, mut all) = (0, 0, 0);
+    let [least, most] = [AS_WIDE * width / view.cell, width / AS_WIDE / view.cell + BETWEEN_CELLS as f64];
+    for row in rows {
+        let mut halves = open_halves(view, row);
+        let count = halves[0].len();
+        let is_within = |&(from, to): &(usize, usize)| from > 0 && to < count;
+        let is_as_wide = |&(from, to): &(usize, usize)| (least..=most).contains(&((to - from) as f64));
+        let ways = runs(&both_open(&halves), true);
+        for (from, to) in ways.into_iter().filter(is_within).filter(is_as_wide) {
+            open += 1;
+            let beside = from.saturating_sub(BETWEEN_CELLS)..(to + BETWEEN_CELLS).min(count);
+            all -= 2 * beside.len() as i64;
+            for half in &mut halves {
+                half[beside.clone()].fill(false);
+            }
+        }
+        all += 2 * count as i64;
+        let lengths = halves.iter().flat_map(|half| runs(half, true)).map(|(from, to)| to - from);
+        free += lengths.filter(|length| *length as f64 >= SHELF / view.cell).sum::<usize>();
+    }
+    let [free, all, own] = [free as f64, all as f64, width / view.cell];
+    let share = (free + 0.5 * own) / (all + own).max(1.0);
+    chance(open, all / 2.0 / own * share * share) < UNLIKELY_IN_FULL
+}
+
+/// In which columns each half of a row is open.
+fn open_halves(view: &Turned, row: &Row) -> [Vec<bool>; 2] {
+    let columns = view.column(row.along[0])..view.column(row.along[1]);
+    let middle = f64::midpoint(row.across[0], row.across[1]);
+    [[row.across[0], middle], [middle, row.across[1]]].map(|[low, high]| {
+        let blocked = view.blocked_where(columns.clone(), low, high, |share| share > LEFT);
+        (0..columns.len()).map(|n| !blocked.get(n)).collect()
+    })
+}
+
+fn both_open([one, two]: &[Vec<bool>; 2]) -> Vec<bool> {
+    one.iter().zip(two).map(|(one, two)| *one && *two).collect()
+}
+
 /// True when both racks would hardly be empty at so many of all places by chance, where one of them is at so many more.
 fn is_more_than_chance(open: usize, half_open: f64, places: f64) -> bool {
     // How often the one is empty where the other is not.
     let shut = (places - open as f64 - half_open).max(0.0);
     let share = (half_open + 0.5) / (half_open + 2.0 * shut + 1.0);
-    is_unlikely(open, places * share * share)
+    chance(open, places * share * share) < UNLIKELY
 }
 
-/// True when so many are unlikely where so many are expected (Poisson's distribution).
-fn is_unlikely(count: usize, expected: f64) -> bool {
+/// How likely so many or more are where so many are expected (Poisson's distribution).
+fn chance(count: usize, expected: f64) -> f64 {
     let mut term = libm::exp(-expected);
     let mut fewer = 0.0;
     for n in 0..count {
         fewer += term;
         term *= expected / (n + 1) as f64;
     }
-    1.0 - fewer < UNLIKELY
+    1.0 - fewer
 }
 
 #[cfg(test)]
@@ -76,12 +121,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counts_are_as_unlikely_as_the_distribution_says() {
-        // At 0.1 two or more have a chance of 0.0047, one or more of 0.095; at 1 five or more of 0.0037, four or more of 0.019.
-        for (count, expected, is_so) in
-            [(0, 0.1, false), (1, 0.1, false), (2, 0.1, true), (4, 1.0, false), (5, 1.0, true)]
+    fn counts_are_as_likely_as_the_distribution_says() {
+        for (count, expected, said) in
+            [(0, 0.1, 1.0), (1, 0.1, 0.0952), (2, 0.1, 0.0047), (4, 1.0, 0.0190), (5, 1.0, 0.0037)]
         {
-            assert_eq!(is_unlikely(count, expected), is_so, "{count} of {expected}");
+            assert!((chance(count, expected) - said).abs() < 1e-4, "{count} of {expected}");
         }
     }
 

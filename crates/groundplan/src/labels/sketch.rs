@@ -9,7 +9,7 @@ use super::cornered;
 use super::corridors::{self, Strip};
 use super::crossed;
 use super::faced;
-use super::gates;
+use super::gates::{self, Gates};
 use super::heads;
 use super::joined;
 use super::junctions;
@@ -206,11 +206,13 @@ impl Plan {
         if !cut.is_empty() && !plan.find_racks(views, on_legs, &standing, threads).is_empty() {
             plan = plan.with(views, &cut, least, threads);
         }
-        let gates = gates::find(evidence, look, views, &plan.strips, &plan.rows);
-        let (known, more) = (plan.strips.len(), gates.len());
-        plan.strips.extend(gates);
+        let Gates { ways, out_of_step } = gates::find(evidence, look, views, &plan.strips, &plan.rows);
+        let (known, more) = (plan.strips.len(), ways.len() + out_of_step.len());
+        plan.strips.extend(ways);
         let across = plan.strips.clone();
-        plan.strips = joined::apart(views, widths::alike(views, plan.strips));
+        plan.strips = widths::alike(views, plan.strips);
+        plan.strips.extend(out_of_step);
+        plan.strips = joined::apart(views, plan.strips);
         let carried = carried::on(evidence, look, views, plan.strips.clone());
         if more > 0 || plan.strips.len() < known || carried != plan.strips {
             plan.strips = carried;

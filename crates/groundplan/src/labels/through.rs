@@ -213,11 +213,22 @@ impl<'a> Through<'a> {
             (true, _) if self.is_past_ends(common) => LIKELY,
             (true, true) => ALIKE,
             (true, false) if known.is_empty() => FIRST,
-            (true, false) if !is_told_within(other.direction) && self.is_as_aisles(common) => PAST,
+            (true, false) if !is_told_within(other.direction) && self.is_as_aisles(common) => {
+                if self.is_closed(common) { FIRST } else { PAST }
+            }
             (true, false) if self.rows[common.rows[0]].is_as_bays(common.ends) => SOME,
             (true, false) => OTHER,
         };
         common.chance < limit
+    }
+
+    /// True when racks end on both its sides in each of its rows.
+    fn is_closed(&self, common: &Common) -> bool {
+        common.rows.iter().all(|&n| {
+            let ends = self.rows[n].stretch(common.ends);
+            let is_there = |way: &[f64; 2]| [0, 1].into_iter().all(|side| (way[side] - ends[side]).abs() <= SLACK);
+            self.rows[n].columns.ways().iter().any(is_there)
+        })
     }
 
     /// True when it is no narrower than what leads from aisle to aisle.

@@ -20,8 +20,8 @@ const APART: f64 = 0.1;
 const ROWS: usize = 3;
 /// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
 const WALL: f64 = 0.9;
-const TAKEN: f64 = 0.5;
-const BEYOND: f64 = 0.4;
+const TAKEN: f64 = 0.2;
+const BEYOND: f64 = 0.6;
 
 /// How wide the ways of a direction are that are no bays, metres.
 #[derive(Default)]
