@@ -189,3 +189,17 @@ def test_an_aisle_between_two_racks_is_as_long_as_they_are_seen_or_not(
     else:
         assert last == pytest.approx(1, abs=0.02)
         assert whole["confidence"] < aisle["confidence"] - 0.1
+
+
+def test_an_aisle_ends_at_the_wall_though_the_last_bay_on_one_side_is_empty() -> None:
+    # Four aisles between racks of 1.2 m, 20 m long, from a way of 4 m to a wall; the last 3.2 m of one rack are empty up to
+    # its back.
+    picture = np.full((320, 520), 205, np.uint8)
+    picture[18:302, 18:502] = 0
+    picture[20:300, 20:500] = 254
+    for y in (80, 164, 248):
+        picture[y : y + 24, 20:420] = 0
+    picture[164:186, 20:84] = 254
+    survey = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION, origin=(0, 0))
+    ends = sorted(label["at"][1] for label in survey.of_kind("junction") if label["type"] == "end")
+    assert ends == pytest.approx([2.5, 6.7, 10.9, 14.3], abs=0.2)

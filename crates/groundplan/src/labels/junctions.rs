@@ -4,7 +4,7 @@ use super::beside::placed;
 use super::corridors::{self, Strip};
 use super::meeting::{CLUTTER, LEAST_SINE, Meeting, SAME, SHORT, meet, nearest, of_each};
 use super::near::Near;
-use super::shut::{LOOK, closed, goes_on, sign};
+use super::shut::{self, LOOK, goes_on, sign};
 use super::turned::{Turned, least_sine};
 use crate::bands::flat_map_each;
 use crate::ends::{overlap, shared, sorted, wider};
@@ -103,7 +103,7 @@ pub fn ends(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<(us
             if met {
                 continue;
             }
-            let Some(place) = closed(view, strip, side, LOOK) else { continue };
+            let Some(place) = shut::end(view, strip, side) else { continue };
             let near = placed[strip.direction].touching(wider([place; 2], LOOK), strip.across);
             if !near.into_iter().any(|m| m != n && goes_on_beside(view, strip, side, place, &strips[m])) {
                 found.push((n, side, place));

@@ -3,7 +3,10 @@
 use super::barriers;
 use super::corridors::Strip;
 use super::panes;
+use super::pitch::LONGEST;
+use super::sided;
 use super::turned::Turned;
+use crate::ends::sorted;
 use std::ops::Range;
 
 /// A corridor goes on beyond a junction when it does so for this long, metres, and where a wall ends it, for this share
@@ -32,6 +35,13 @@ pub fn is_shut(views: &[Turned], strip: &Strip, side: usize) -> bool {
     let end = strip.along[side];
     let [from, to] = [end - SHUT, end + SHUT].map(|u| view.column(u));
     closed(view, strip, side, SHUT).is_some() || barriers::across(view, strip.across, from..to + 1).any()
+}
+
+/// Where a strip ends: at what closes it near one of its ends, or no further off than bays are long, where one of its sides
+/// goes on to that; the last bay on the other side is empty.
+pub fn end(view: &Turned, strip: &Strip, side: usize) -> Option<f64> {
+    let is_sided_to = |place: &f64| sided::is_sided_by_bays(view, strip, sorted([strip.along[side], *place]));
+    closed(view, strip, side, LOOK).or_else(|| closed(view, strip, side, LONGEST).filter(is_sided_to))
 }
 
 /// A strip without what stands at its sides, across.

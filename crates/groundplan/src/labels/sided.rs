@@ -24,10 +24,26 @@ const PARTED: f64 = 0.3;
 
 /// True when something that is not free stands along both sides of a strip.
 pub fn is_sided(view: &Turned, strip: &Strip) -> bool {
-    let columns = view.column(strip.along[0])..view.column(strip.along[1]);
+    are_sided(view, strip, strip.along).into_iter().all(|is_sided| is_sided)
+}
+
+/// True when something does along one of them between two places, and beside the other no further off than a row is deep.
+pub fn is_sided_by_bays(view: &Turned, strip: &Strip, along: [f64; 2]) -> bool {
+    let columns = view.column(along[0])..view.column(along[1]);
+    let [low, high] = strip.across;
+    let ends_bays = [[low - DEPTH.1, low], [high, high + DEPTH.1]].map(|[low, high]| {
+        let stands = view.some_occupied(columns.clone(), low, high);
+        stands.iter().filter(|share| **share > 0.0).count() as f64 >= SIDED * columns.len() as f64
+    });
+    are_sided(view, strip, along).into_iter().any(|is_sided| is_sided) && ends_bays.into_iter().all(|ends| ends)
+}
+
+/// Along which of a strip's sides something that is not free stands between two places.
+fn are_sided(view: &Turned, strip: &Strip, along: [f64; 2]) -> [bool; 2] {
+    let columns = view.column(along[0])..view.column(along[1]);
     let [low, high] = strip.across;
     let (within, beyond) = (SIDE.0 * strip.width(), SIDE.1 * strip.width());
-    [[low - beyond, low + within], [high - within, high + beyond]].into_iter().all(|[low, high]| {
+    [[low - beyond, low + within], [high - within, high + beyond]].map(|[low, high]| {
         let held = view.blocked_where(columns.clone(), low, high, |share| share > 0.0);
         held.count(0..columns.len()) as f64 >= SIDED * columns.len() as f64
     })
