@@ -192,8 +192,8 @@ def test_an_aisle_between_two_racks_is_as_long_as_they_are_seen_or_not(
 
 
 def test_an_aisle_ends_at_the_wall_though_the_last_bay_on_one_side_is_empty() -> None:
-    # Four aisles between racks of 1.2 m, 20 m long, from a way of 4 m to a wall; the last 3.2 m of one rack are empty up to
-    # its back.
+    # Four aisles between racks of 1.2 m, 20 m long, from a way of 4 m to a wall; the last 3.2 m of one rack are
+    # empty up to its back.
     picture = np.full((320, 520), 205, np.uint8)
     picture[18:302, 18:502] = 0
     picture[20:300, 20:500] = 254
