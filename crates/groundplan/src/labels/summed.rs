@@ -108,10 +108,11 @@ impl Summed {
 
 /// The sums with one row more.
 fn add_row(sums: &mut Vec<u16>, row: &[u8], part: impl Fn(u8) -> u8) {
-    let last = sums.len() - row.len();
-    sums.extend_from_within(last..);
-    let last = sums.len() - row.len();
-    sums[last..].iter_mut().zip(row).for_each(|(sum, &cell)| *sum += u16::from(part(cell)));
+    let (from, to) = (sums.len() - row.len(), sums.len());
+    sums.resize(to + row.len(), 0);
+    let (before, own) = sums.split_at_mut(to);
+    let sums = own.iter_mut().zip(&before[from..]).zip(row);
+    sums.for_each(|((sum, before), &cell)| *sum = before + u16::from(part(cell)));
 }
 
 /// Some rows of them.

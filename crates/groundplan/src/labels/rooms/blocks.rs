@@ -22,14 +22,20 @@ impl Blocks {
         clearance.resize(width, 0);
         let mut most = vec![0; columns.len()];
         for y in rows.clone().step_by(side) {
-            most.fill(0);
-            for row in (y..(y + side).min(rows.end)).map(|y| &pixels.row(y)[columns.clone()]) {
-                most.iter_mut().zip(row).for_each(|(most, own)| *most = (*most).max(*own));
+            let mut own = (y..(y + side).min(rows.end)).map(|y| &pixels.row(y)[columns.clone()]);
+            own.next().into_iter().for_each(|row| most.copy_from_slice(row));
+            for row in own {
+                most.iter_mut().zip(row).for_each(|(most, own)| *most = greater(*most, *own));
             }
             clearance.push(0);
             let greatest = |pixels: &[u32]| pixels.iter().fold(0, |most, own| most.max(*own));
             match side {
-                2 => clearance.extend(most.chunks(2).map(|pixels| pixels[0].max(pixels[pixels.len() - 1]))),
+                2 => {
+                    let pairs = most.chunks_exact(2);
+                    let last = pairs.remainder();
+                    clearance.extend(pairs.map(|pixels| greater(pixels[0], pixels[1])));
+                    clearance.extend(last);
+                }
                 _ => clearance.extend(most.chunks(side).map(greatest)),
             }
             clearance.push(0);
@@ -83,4 +89,9 @@ impl Blocks {
         let [below, own, above] = [block - self.width, block, block + self.width].map(three);
         [below[0], below[1], below[2], own[0], own[2], above[0], above[1], above[2]]
     }
+}
+
+/// Of two squared clearances, which are less than 2^31, the greater: with a sign they are compared in fewer steps.
+fn greater(one: u32, two: u32) -> u32 {
+    (one as i32).max(two as i32) as u32
 }
