@@ -45,6 +45,7 @@ mod pieces;
 mod pillars;
 mod pitch;
 mod places;
+mod quarter;
 mod racks;
 mod ragged;
 mod recall;

@@ -14,16 +14,13 @@ use std::ops::Range;
 const SPARE: usize = 2;
 
 impl Turned {
-    /// The samples that are blocked or occupied in each cell.
-    pub(super) fn look_at(&self, scene: &Scene, look: &Look) -> (Cells, Vec<Told>) {
+    /// The samples that are blocked or occupied in each cell; all cells may be known, row after row, but for the racks on
+    /// legs.
+    pub(super) fn look_at(&self, scene: &Scene, look: &Look, known: Option<&[u8]>) -> (Cells, Vec<Told>) {
         let samples = self.samples as usize;
         let frame = &scene.grid.frame;
-        let sample = self.cell / samples as f64;
-        let is_fine = sample > 1.1 * frame.resolution;
-        // On the grid, in pixels: the first sample, and the steps to the next one along and across.
-        let at = |u: f64, v: f64| frame.to_pixels(self.to_map([self.start[0] + u, self.start[1] + v]));
-        let (origin, along, across) = (at(0.0, 0.0), at(sample, 0.0), at(0.0, sample));
-        let steps = [along, across].map(|p| [0, 1].map(|axis| p[axis] - origin[axis]));
+        let is_fine = self.is_fine(frame);
+        let (origin, steps) = self.samples_on(frame);
         let place = |a: f64, b: f64| [0, 1].map(|axis| origin[axis] + a * steps[0][axis] + b * steps[1][axis]);
         // Where samples are pixels apart, the staircase of a wall one pixel thick has no gap in lanes of two pixels, and no
         // pixel lies between so many looks along and across a cell.
@@ -31,8 +28,10 @@ impl Turned {
         let thin = pixels.div_ceil(2).clamp(samples, u32::BITS as usize);
         let looks = pixels.next_multiple_of(thin);
         let make = |n: usize, first: usize, row: &mut [u8]| {
-            let lanes: [[f64; 2]; LANES] = std::array::from_fn(|j| place(0.5, (n * samples + j) as f64 + 0.5));
-            look.cells(&lanes[..samples], steps[0], first, row);
+            match known {
+                Some(cells) => row.copy_from_slice(&cells[n * self.size[0] + first..][..row.len()]),
+                None => self.look_along(frame, look, n, first, row),
+            }
             if is_fine {
                 let each = f64::from(self.samples) / looks as f64;
                 let step = steps[0].map(|step| step * each);
@@ -54,6 +53,28 @@ impl Turned {
         };
         let (seen, recall) = (self.seen(frame, look), scene.recall);
         Cells::new(self.size, self.samples.pow(2) as u16, seen, Source { make, key }, recall, scene.threads)
+    }
+
+    /// The samples that are blocked or occupied in the cells of a row, from some column on.
+    pub(super) fn look_along(&self, frame: &Frame, look: &Look, n: usize, first: usize, row: &mut [u8]) {
+        let samples = self.samples as usize;
+        let (origin, steps) = self.samples_on(frame);
+        let place = |b: f64| [0, 1].map(|axis| origin[axis] + 0.5 * steps[0][axis] + b * steps[1][axis]);
+        let lanes: [[f64; 2]; LANES] = std::array::from_fn(|j| place((n * samples + j) as f64 + 0.5));
+        look.cells(&lanes[..samples], steps[0], first, row);
+    }
+
+    /// Whether some pixels lie between samples.
+    pub(super) fn is_fine(&self, frame: &Frame) -> bool {
+        self.cell / f64::from(self.samples) > 1.1 * frame.resolution
+    }
+
+    /// On the grid, in pixels: the lower corner of the first sample, and the steps to the next one along and across.
+    fn samples_on(&self, frame: &Frame) -> ([f64; 2], [[f64; 2]; 2]) {
+        let sample = self.cell / f64::from(self.samples);
+        let at = |u: f64, v: f64| frame.to_pixels(self.to_map([self.start[0] + u, self.start[1] + v]));
+        let (origin, along, across) = (at(0.0, 0.0), at(sample, 0.0), at(0.0, sample));
+        (origin, [along, across].map(|p| [0, 1].map(|axis| p[axis] - origin[axis])))
     }
 
     /// The part of the view in which something was seen of the map, and a few cells more.

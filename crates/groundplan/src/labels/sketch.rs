@@ -19,6 +19,7 @@ use super::look::Look;
 use super::meeting::Meeting;
 use super::narrowed;
 use super::panes;
+use super::quarter;
 use super::racks;
 use super::ragged::{self, Ways};
 use super::rooms::{Bar, Space};
@@ -49,11 +50,9 @@ pub struct Glance<'a> {
 impl<'a> Glance<'a> {
     pub fn new(scene: &Scene<'a>, look: Look<'a>, uprights: &[Upright]) -> Self {
         let on_legs = legs::find(scene, uprights);
-        let views = map_each(scene.directions.angles.len(), scene.threads, |direction| {
-            let mut view = Turned::new(scene, direction, &on_legs);
-            view.see(&scene.shared_out(), &look);
-            view
-        });
+        let count = scene.directions.angles.len();
+        let mut views: Vec<_> = (0..count).map(|direction| Turned::new(scene, direction, &on_legs)).collect();
+        quarter::see(&mut views, scene, &look);
         Self { look, views, on_legs }
     }
 }
@@ -106,8 +105,8 @@ impl<'a> Sight<'a, Free> {
     /// And what lies between the lines, for which of the gradients the specks are enough.
     pub fn seen(mut self, evidence: &Evidence) -> Self {
         let Self { look, views, .. } = &mut self;
+        quarter::see(views, &evidence.scene(), look);
         each(views.iter_mut().collect(), evidence.threads, |view: &mut Turned| {
-            view.see(&evidence.scene().shared_out(), look);
             view.glaze();
             view.recur(&evidence.shared_out());
         });
@@ -149,14 +148,13 @@ fn planned(evidence: &Evidence, look: &Look, views: Vec<Turned>, on_legs: &[Row]
     if left == on_legs {
         return (views, plan);
     }
-    let mut views = map_each(views.len(), evidence.threads, |direction| {
-        let scene = evidence.scene().shared_out();
-        let mut view = Turned::new(&scene, direction, &left);
+    let scene = evidence.scene();
+    let mut views: Vec<_> = (0..views.len()).map(|direction| Turned::new(&scene, direction, &left)).collect();
+    quarter::see(&mut views, &scene, look);
+    each(views.iter_mut().collect(), evidence.threads, |view: &mut Turned| {
         view.line(evidence);
-        view.see(&scene, look);
         view.glaze();
         view.recur(&evidence.shared_out());
-        view
     });
     panes::share(&mut views);
     let (plan, _) = Plan::of(evidence, look, &views, &left);

@@ -28,6 +28,11 @@ const MANY: usize = 1 << 23;
 /// A cell has so many samples at most.
 const SAMPLES: usize = 9;
 
+/// Whether so many cells along and across are kept in squares.
+pub fn are_many([width, height]: [usize; 2]) -> bool {
+    width * height > MANY || height > usize::from(u16::MAX) / SAMPLES
+}
+
 /// The cells of a view.
 pub enum Cells {
     Summed(Summed),
@@ -86,7 +91,7 @@ impl Cells {
         K: Fn(Range<usize>) -> Key + Sync,
     {
         let keyed = recall.keeps();
-        if width * height > MANY || height > usize::from(u16::MAX) / SAMPLES {
+        if are_many([width, height]) {
             let made = map_bands([width, height], threads, |band| {
                 recall.views.or_find(
                     || key(band.clone()),

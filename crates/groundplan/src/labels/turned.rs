@@ -4,10 +4,11 @@
 use super::grounds::Grounds;
 use super::look::{LANES, Look};
 use super::panes::{Across, Pane};
+use super::quarter::Quarter;
 use super::recall::Key;
 use super::rows::Row;
 use super::summed::Summed;
-use super::sums::{Cells, Told, What};
+use super::sums::{Cells, Told, What, are_many};
 use super::{Evidence, Scene};
 use crate::bits::Bits;
 use crate::ends::wider;
@@ -52,6 +53,8 @@ pub struct Turned {
     pub rows: Arc<Vec<Told>>,
     /// Racks that stand on legs, whose ground is taken.
     pub(super) grounds: Grounds,
+    /// The view that it is seen with.
+    pub(super) quarter: Option<Quarter>,
     /// Keys of the view without its rows and lines, and of its lines.
     keys: (Key, Arc<Vec<Key>>),
 }
@@ -59,6 +62,12 @@ pub struct Turned {
 impl Turned {
     /// Along one direction; nothing is seen yet.
     pub fn new(scene: &Scene, direction: usize, on_legs: &[Row]) -> Self {
+        let mut made = Self::by_itself(scene, direction).turned_from_another(scene);
+        made.grounds = Grounds::new(scene.directions, &made, on_legs);
+        made
+    }
+
+    fn by_itself(scene: &Scene, direction: usize) -> Self {
         let frame = &scene.grid.frame;
         let angle = scene.directions.angles[direction];
         let (cos, sin) = (libm::cos(angle), libm::sin(angle));
@@ -72,7 +81,7 @@ impl Turned {
         let start = [low(0), low(1)];
         let size: [usize; 2] = [0, 1].map(|axis| ((high(axis) - start[axis]) / cell).ceil().max(1.0) as usize);
         let samples = (side as u32).clamp(1, LANES as u32);
-        let mut made = Self {
+        Self {
             direction,
             angle,
             heading: [cos, sin],
@@ -89,15 +98,35 @@ impl Turned {
             across: Arc::default(),
             rows: Arc::default(),
             grounds: Grounds::default(),
+            quarter: None,
             keys: (Key::default(), Arc::default()),
-        };
-        made.grounds = Grounds::new(scene.directions, &made, on_legs);
-        made
+        }
     }
 
-    /// Sees all of the map, for which no lines are needed.
-    pub fn see(&mut self, scene: &Scene, look: &Look) {
-        let (cells, rows) = self.look_at(scene, look);
+    /// The same as another sees it, turned by a quarter, where their directions are at right angles: cells of the one are
+    /// cells of the other. Not where pixels lie between samples, nor where there are too many cells.
+    fn turned_from_another(mut self, scene: &Scene) -> Self {
+        let frame = &scene.grid.frame;
+        let sample = self.cell / f64::from(self.samples);
+        let is_whole = !self.is_fine(frame) && !are_many(self.size) && !are_many([self.size[1], self.size[0]]);
+        let Some(quarter) = Quarter::of(scene.directions, frame, sample, self.direction).filter(|_| is_whole) else {
+            return self;
+        };
+        let other = Self::by_itself(scene, quarter.other);
+        // What is off is off least in the middle of the map.
+        let middle = frame.to_metres([0.5 * frame.width as f64, 0.5 * frame.height as f64]);
+        let from = |view: &Self| [0, 1].map(|axis| view.place(middle)[axis] - view.start[axis]);
+        let size = other.size.map(|cells| cells as f64 * other.cell);
+        let place = quarter.place(from(&other), size);
+        self.start = [0, 1].map(|axis| self.place(middle)[axis] - place[axis]);
+        self.size = [other.size[1], other.size[0]];
+        self.quarter = Some(quarter);
+        self
+    }
+
+    /// Sees all of the map, for which no lines are needed; its cells may be known.
+    pub fn see(&mut self, scene: &Scene, look: &Look, known: Option<&[u8]>) {
+        let (cells, rows) = self.look_at(scene, look, known);
         (self.cells, self.rows) = (cells, Arc::new(rows));
     }
 
