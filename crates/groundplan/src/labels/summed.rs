@@ -37,14 +37,16 @@ impl Summed {
         let (sums, told) = (std::array::from_fn(|_| room()), Vec::with_capacity(part.rows.len()));
         let mut made = Self { part, samples, sums, told };
         let (mut row, mut bars) = (vec![0; width], vec![0; width]);
+        let mut last = [(); 3].map(|()| vec![0; width]);
         for n in made.part.rows.clone() {
             make(n, &mut row);
             barred(&row, &mut bars);
             made.told.push(Told::new(&row, keyed));
-            let [blocked, occupied, barred] = &mut made.sums;
-            add_row(blocked, &row, |cell| cell & 15);
-            add_row(occupied, &row, |cell| cell >> 4);
-            add_row(barred, &bars, |cell| cell);
+            let [blocked, occupied, barred] = &mut last;
+            add(blocked, &row, |cell| cell & 15);
+            add(occupied, &row, |cell| cell >> 4);
+            add(barred, &bars, |cell| cell);
+            made.sums.iter_mut().zip(&last).for_each(|(sums, last)| sums.extend_from_slice(last));
         }
         made
     }
@@ -106,13 +108,9 @@ impl Summed {
     }
 }
 
-/// The sums with one row more.
-fn add_row(sums: &mut Vec<u16>, row: &[u8], part: impl Fn(u8) -> u8) {
-    let (from, to) = (sums.len() - row.len(), sums.len());
-    sums.resize(to + row.len(), 0);
-    let (before, own) = sums.split_at_mut(to);
-    let sums = own.iter_mut().zip(&before[from..]).zip(row);
-    sums.for_each(|((sum, before), &cell)| *sum = before + u16::from(part(cell)));
+/// Adds a part of each cell of a row.
+fn add(sums: &mut [u16], row: &[u8], part: impl Fn(u8) -> u8) {
+    sums.iter_mut().zip(row).for_each(|(sum, &cell)| *sum += u16::from(part(cell)));
 }
 
 /// Some rows of them.
