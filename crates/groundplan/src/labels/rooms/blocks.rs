@@ -1,61 +1,64 @@
 //! The free space in blocks of pixels: what is wider than a crack shows in them as well, and there are far fewer.
 
 use super::clearance::Rows;
+use super::heights::Window;
+use super::raster::Raster;
 use std::ops::Range;
 
-/// Blocks of so many pixels along a side, with a border of blocks that hold none.
+/// So wide is a block, about, metres: what a narrow parts is larger.
+const WIDE: f64 = 0.14;
+/// And so many pixels at most.
+const MOST: f64 = 64.0;
+
+/// Blocks of a few pixels along and across, with a border of blocks that hold none.
 pub struct Blocks {
-    side: usize,
+    /// Pixels along a row.
+    wide: usize,
     pub width: usize,
-    /// The pixels' columns and rows.
+    /// The pixels' columns, and the first of the rows that are looked at.
     columns: Range<usize>,
-    rows: Range<usize>,
+    first: usize,
     /// The greatest squared clearance in each, in pixels.
     pub clearance: Vec<u32>,
 }
 
 impl Blocks {
-    /// From the clearances of pixels in some columns and rows, so many along the side of a block.
-    pub fn new(side: usize, pixels: &Rows, [columns, rows]: [Range<usize>; 2]) -> Self {
-        let width = columns.len().div_ceil(side) + 2;
-        let mut clearance = Vec::with_capacity(width * (rows.len().div_ceil(side) + 2));
+    /// From the clearances of pixels in some columns and rows, of which each that is looked at is a row of blocks.
+    pub fn new(raster: &Raster, pixels: &Rows, Window { columns, rows, step }: &Window) -> Self {
+        let wide = raster.pixels(WIDE).round().clamp(1.0, MOST) as usize;
+        let from = &pixels.window;
+        let within = columns.start - from.columns.start..columns.end - from.columns.start;
+        let first = (rows.start - from.rows.start) / step;
+        let height = (rows.end - from.rows.start).div_ceil(*step).min(from.count()) - first;
+        let width = columns.len().div_ceil(wide) + 2;
+        let mut clearance = Vec::with_capacity(width * (height + 2));
         clearance.resize(width, 0);
-        let mut most = vec![0; columns.len()];
-        for y in rows.clone().step_by(side) {
-            let mut own = (y..(y + side).min(rows.end)).map(|y| &pixels.row(y)[columns.clone()]);
-            own.next().into_iter().for_each(|row| most.copy_from_slice(row));
-            for row in own {
-                most.iter_mut().zip(row).for_each(|(most, own)| *most = greater(*most, *own));
-            }
+        for n in first..first + height {
             clearance.push(0);
+            let row = &pixels.row(n)[within.clone()];
             let greatest = |pixels: &[u32]| pixels.iter().fold(0, |most, own| most.max(*own));
-            match side {
-                2 => {
-                    let pairs = most.chunks_exact(2);
-                    let last = pairs.remainder();
-                    clearance.extend(pairs.map(|pixels| greater(pixels[0], pixels[1])));
-                    clearance.extend(last);
+            match wide {
+                3 => {
+                    let threes = row.chunks_exact(3);
+                    let rest = threes.remainder();
+                    clearance.extend(threes.map(|three| three[0].max(three[1]).max(three[2])));
+                    clearance.extend((!rest.is_empty()).then(|| greatest(rest)));
                 }
-                _ => clearance.extend(most.chunks(side).map(greatest)),
+                _ => clearance.extend(row.chunks(wide).map(greatest)),
             }
             clearance.push(0);
         }
         clearance.resize(clearance.len() + width, 0);
-        Self { side, width, columns, rows, clearance }
+        Self { wide, width, columns: columns.clone(), first, clearance }
     }
 
     /// The pixel of a block that has the greatest clearance, the first of several.
     pub fn widest(&self, block: usize, pixels: &Rows) -> [usize; 2] {
-        let part = |all: &Range<usize>, n: usize| {
-            let from = all.start + n * self.side;
-            from..(from + self.side).min(all.end)
-        };
-        let columns = part(&self.columns, block % self.width - 1);
-        let all = part(&self.rows, block / self.width - 1).flat_map(|y| columns.clone().map(move |x| [x, y]));
-        let best = |best: [usize; 2], [x, y]: [usize; 2]| {
-            if pixels.row(y)[x] > pixels.row(best[1])[best[0]] { [x, y] } else { best }
-        };
-        all.reduce(best).unwrap_or([self.columns.start, self.rows.start])
+        let n = self.first + block / self.width - 1;
+        let from = self.columns.start + (block % self.width - 1) * self.wide;
+        let within = &pixels.row(n)[from - pixels.window.columns.start..];
+        let place = within[..self.wide.min(within.len())].iter().position(|&own| own == self.clearance[block]);
+        [from + place.unwrap_or(0), pixels.window.row(n)]
     }
 
     /// The blocks with so much clearance at least, from the widest to the tightest (a counting sort).
@@ -89,9 +92,4 @@ impl Blocks {
         let [below, own, above] = [block - self.width, block, block + self.width].map(three);
         [below[0], below[1], below[2], own[0], own[2], above[0], above[1], above[2]]
     }
-}
-
-/// Of two squared clearances, which are less than 2^31, the greater: with a sign they are compared in fewer steps.
-fn greater(one: u32, two: u32) -> u32 {
-    (one as i32).max(two as i32) as u32
 }

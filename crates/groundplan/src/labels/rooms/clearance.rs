@@ -1,7 +1,8 @@
-//! How far every pixel of the free space is from the nearest that is not free, squared, in pixels (Meijster, Roerdink
-//! and Hesselink 2000).
+//! How far pixels of the free space are from the nearest that is not free, squared, in pixels (Meijster, Roerdink and
+//! Hesselink 2000), in the rows that are looked at.
 
 use super::super::recall::{Key, Recall};
+use super::heights::Window;
 use super::raster::Raster;
 use super::runs::{Run, Runs};
 use super::squared::Squared;
@@ -12,7 +13,7 @@ use std::ops::Range;
 /// Rasters of more pixels than this are looked at piece by piece.
 const WHOLE: usize = 1 << 24;
 /// So many rows at a time, but without threads all where there are no more pixels than this.
-const ROWS: usize = 128;
+const ROWS: usize = 64;
 const AT_ONCE: usize = 1 << 20;
 /// So many bands of rows are begun together, where they are not kept.
 const SIDE_BY_SIDE: usize = 16;
@@ -22,10 +23,9 @@ const TOGETHER: usize = 1 << 11;
 /// The clearances of a raster: kept where they are few, else made again whenever they are asked for.
 pub struct Clearance(Option<Rows>);
 
-/// Squared distances of the pixels of some rows, in bands of rows.
+/// Squared distances of the pixels of the rows that are looked at, in bands of these.
 pub struct Rows {
-    pub width: usize,
-    pub height: usize,
+    pub window: Window,
     /// Rows of a band.
     band: usize,
     bands: Vec<Vec<u32>>,
@@ -38,8 +38,9 @@ impl Rows {
     }
 
     /// One row, from the lowest.
-    pub fn row(&self, y: usize) -> &[u32] {
-        &self.bands[y / self.band][y % self.band * self.width..][..self.width]
+    pub fn row(&self, n: usize) -> &[u32] {
+        let width = self.window.columns.len();
+        &self.bands[n / self.band][n % self.band * width..][..width]
     }
 }
 
@@ -53,7 +54,7 @@ impl Clearance {
         self.0.as_ref()
     }
 
-    /// Calls `visit` with the number of each run and how wide the free space is along it.
+    /// Calls `visit` with the number of each run in a row that is looked at and how wide the free space is along it.
     pub fn along(
         &self,
         raster: &Raster,
@@ -64,22 +65,19 @@ impl Clearance {
     ) {
         if let Some(rows) = &self.0 {
             let (width, roots) = (raster.width, Roots::new());
-            let along = |run: &Run| {
+            let along = |(n, run): (usize, &Run)| {
                 let start = run.pixels().start;
-                Width::new(&rows.row(start / width)[start % width..][..run.len()], &roots)
+                let row = rows.row(rows.window.looked_at(start / width)?);
+                Some((n, Width::new(&row[start % width..][..run.len()], &roots)))
             };
             let parts: Vec<&[Run]> = runs.all.chunks(TOGETHER).collect();
-            let widths = map_each(parts.len(), threads, |n| parts[n].iter().map(along).collect::<Vec<_>>());
-            (0..).zip(widths.into_iter().flatten()).for_each(|(n, width)| visit(n, width));
+            let widths = map_each(parts.len(), threads, |n| {
+                (n * TOGETHER..).zip(parts[n]).filter_map(along).collect::<Vec<_>>()
+            });
+            widths.into_iter().flatten().for_each(|(n, width)| visit(n, width));
             return;
         }
-        let mut next = 0;
-        band_by_band(raster, &runs.all, threads, recall, |widths| {
-            for width in widths {
-                visit(next, width);
-                next += 1;
-            }
-        });
+        band_by_band(raster, &runs.all, threads, recall, visit);
     }
 }
 
@@ -133,135 +131,151 @@ fn sum(squared: &[u32], root: impl Fn(u32) -> f64) -> f64 {
 
 /// Those of a whole raster, whose border is not free.
 fn whole(raster: &Raster, threads: usize) -> Rows {
-    let (width, height, columns) = (raster.width, raster.height, 0..raster.width);
+    let window = Window::whole(raster);
     let threads = worth(raster.len(), threads);
     // What bears on a band from beyond takes a pass of its own; but a band stays in the processor's cache.
-    let band = if threads <= 1 && raster.len() <= AT_ONCE { height } else { ROWS };
-    let bands = in_bands(0..height, band);
-    let above = above(raster, &columns, &bands);
-    let below = if bands.len() == 1 { vec![vec![0; width]] } else { below(raster, &bands, &mut vec![0; width]) };
+    let band = if threads <= 1 && raster.len() <= AT_ONCE { window.count().max(1) } else { ROWS };
+    let bands = window.in_bands(band);
+    let above = window.above(raster, &bands);
+    let mut first = vec![0; raster.width];
+    let below = if bands.len() == 1 { vec![first] } else { window.below(raster, &bands, &mut first) };
     let made = map_each(bands.len(), threads, |n| {
-        let mut band = Vec::with_capacity(bands[n].len() * width);
-        clearances(raster, &columns, bands[n].clone(), &mut below[n].clone(), &above[n], &mut band);
+        let mut band = Vec::with_capacity(bands[n].len() * raster.width);
+        clearances(raster, &window, bands[n].clone(), &mut below[n].clone(), &above[n], &mut band);
         band
     });
-    Rows { width, height, band, bands: made }
+    Rows { window, band, bands: made }
 }
 
 /// Those within some columns and rows of a raster; what is on their border or beyond counts as not free. They take the
 /// room of others.
-pub fn within(raster: &Raster, [columns, rows]: [Range<usize>; 2], mut room: Vec<u32>) -> Rows {
-    let (width, height) = (columns.len(), rows.len());
+pub fn within(raster: &Raster, window: Window, mut room: Vec<u32>) -> Rows {
+    let width = window.columns.len();
     room.clear();
-    room.reserve_exact(height * width);
-    room.resize(width, 0);
-    let bands = in_bands(rows.start + 1..rows.end - 1, ROWS);
+    room.reserve_exact(window.count() * width);
+    let bands = window.in_bands(ROWS);
     let mut below = vec![0; width];
-    for (band, above) in bands.iter().zip(above(raster, &columns, &bands)) {
-        clearances(raster, &columns, band.clone(), &mut below, &above, &mut room);
+    for (band, above) in bands.iter().zip(window.above(raster, &bands)) {
+        clearances(raster, &window, band.clone(), &mut below, &above, &mut room);
     }
-    room.resize(height * width, 0);
-    Rows { width, height, band: height, bands: vec![room] }
+    Rows { band: window.count().max(1), window, bands: vec![room] }
 }
 
-fn in_bands(rows: Range<usize>, band: usize) -> Vec<Range<usize>> {
-    rows.clone().step_by(band).map(|y| y..(y + band).min(rows.end)).collect()
-}
-
-/// How far it is to what is not free within columns, in the row that follows each band.
-fn above(raster: &Raster, columns: &Range<usize>, bands: &[Range<usize>]) -> Vec<Vec<u16>> {
-    let mut row = vec![0; columns.len()];
-    let mut above = vec![row.clone(); bands.len()];
-    for (n, band) in bands.iter().enumerate().skip(1).rev() {
-        for y in band.clone().rev() {
-            step(raster, columns, y, &mut row);
-        }
-        above[n - 1].clone_from(&row);
-    }
-    above
-}
-
-/// How far it is to what is not free in the row before each band; `row` says so of the row before all of them, and then
-/// of the last one.
-fn below(raster: &Raster, bands: &[Range<usize>], row: &mut [u16]) -> Vec<Vec<u16>> {
-    let before = |band: &Range<usize>| {
-        let before = row.to_vec();
-        band.clone().for_each(|y| step(raster, &(0..raster.width), y, row));
-        before
-    };
-    bands.iter().map(before).collect()
-}
-
-/// Calls `visit` with what is told of the runs of some rows, and then of the rows that follow. Several bands of rows are
-/// looked at side by side.
-fn band_by_band(raster: &Raster, runs: &[Run], threads: usize, recall: &Recall, mut visit: impl FnMut(Vec<Width>)) {
-    let (width, columns) = (raster.width, 0..raster.width);
-    let bands = in_bands(0..raster.height, ROWS);
-    let above = above(raster, &columns, &bands);
+/// The same where none are kept. Several bands of rows are looked at side by side.
+fn band_by_band(raster: &Raster, runs: &[Run], threads: usize, recall: &Recall, mut visit: impl FnMut(usize, Width)) {
+    let (width, window) = (raster.width, Window::whole(raster));
+    let bands = window.in_bands(ROWS);
+    let above = window.above(raster, &bands);
     let (mut row, roots) = (vec![0; width], Roots::new());
+    let place = |pixel: usize| runs.partition_point(|run| run.pixels().start < pixel);
     for (bands, above) in bands.chunks(SIDE_BY_SIDE).zip(above.chunks(SIDE_BY_SIDE)) {
-        let below = below(raster, bands, &mut row);
+        let below = window.below(raster, bands, &mut row);
+        // The runs of each row, the first of them and how many.
+        let own: Vec<Vec<Range<usize>>> = bands
+            .iter()
+            .map(|band| {
+                let pixels = |n: usize| window.row(n) * width..(window.row(n) + 1) * width;
+                band.clone().map(pixels).map(|pixels| place(pixels.start)..place(pixels.end)).collect()
+            })
+            .collect();
         let made = map_each_in(bands.len(), threads, |squared: &mut Vec<u32>, n| {
-            let pixels = bands[n].start * width..bands[n].end * width;
-            let place = |pixel: usize| runs.partition_point(|run| run.pixels().start < pixel);
-            let own = &runs[place(pixels.start)..place(pixels.end)];
+            let all =
+                || own[n].iter().zip(bands[n].clone()).flat_map(|(own, row)| own.clone().map(move |run| (row, run)));
+            let within = |(row, run): (usize, usize)| {
+                let start = runs[run].pixels().start - window.row(row) * width;
+                (row - bands[n].start) * width + start..(row - bands[n].start) * width + start + runs[run].len()
+            };
             // What is free in the rows and how far it is beyond them, and the runs.
             let key = || {
+                let rows = window.between(&bands[n]);
+                let pixels = rows.start * width..rows.end * width;
                 let free = pixels.clone().step_by(WORD).map(|n| raster.free.word(n) & lowest(pixels.end - n));
                 let beyond = below[n].iter().zip(&above[n]);
                 let beyond = beyond.map(|(below, above)| u64::from(*below) << 32 | u64::from(*above));
-                let runs = own.iter().map(|run| ((run.pixels().start - pixels.start) << 32 | run.len()) as u64);
+                let runs = all().map(within).map(|pixels| (pixels.start << 32 | pixels.len()) as u64);
                 free.chain(beyond).chain(runs).fold(Key::default().with(width as u64), Key::with)
             };
             recall.widths.or_find(key, || {
                 squared.clear();
-                squared.reserve_exact(pixels.len());
-                clearances(raster, &columns, bands[n].clone(), &mut below[n].clone(), &above[n], squared);
-                let of = |run: &Run| Width::new(&squared[run.pixels().start - pixels.start..][..run.len()], &roots);
-                own.iter().map(of).collect()
+                squared.reserve_exact(bands[n].len() * width);
+                clearances(raster, &window, bands[n].clone(), &mut below[n].clone(), &above[n], squared);
+                all().map(within).map(|pixels| Width::new(&squared[pixels], &roots)).collect()
             })
         });
-        made.into_iter().for_each(&mut visit);
+        for (own, widths) in own.into_iter().zip(made) {
+            own.into_iter().flatten().zip(widths).for_each(|(run, width)| visit(run, width));
+        }
     }
-}
-
-/// From how far it is to what is not free in the row before to how far it is in this one: in 16 bits, of which many are
-/// looked at together, and where nothing is nearer than these hold, it is as far as they do.
-fn step(raster: &Raster, columns: &Range<usize>, y: usize, row: &mut [u16]) {
-    let from = y * raster.width + columns.start;
-    for height in row.iter_mut() {
-        *height = height.saturating_add(1);
-    }
-    for run in raster.free.runs(from..from + columns.len(), false) {
-        row[run.start - from..run.end - from].fill(0);
-    }
-    row[0] = 0;
-    row[columns.len() - 1] = 0;
 }
 
 /// The squared clearances of rows, put to what is there. How far it is to what is not free within each column `below` says
 /// of the row before and then of the last one, `above` of the one that follows.
 fn clearances(
     raster: &Raster,
-    columns: &Range<usize>,
+    window: &Window,
     rows: Range<usize>,
     below: &mut [u16],
     above: &[u16],
     all: &mut Vec<u32>,
 ) {
-    let width = columns.len();
+    let width = window.columns.len();
     // From the last row to the first how far it is upwards, and then back again.
     let mut upwards = Vec::with_capacity(rows.len() * width);
     let mut row = above.to_vec();
-    for y in rows.rev() {
-        step(raster, columns, y, &mut row);
+    for n in rows.clone().rev() {
+        window.step_down(raster, n, &mut row);
         upwards.extend_from_slice(&row);
     }
     let mut squared = Squared::new(width);
-    for upwards in upwards.chunks(width).rev() {
+    for (n, upwards) in rows.zip(upwards.chunks(width).rev()) {
+        window.step_up(raster, n, below);
         for (below, above) in below.iter_mut().zip(upwards) {
-            *below = below.saturating_add(1).min(*above);
+            *below = (*below).min(*above);
         }
         squared.row(below, all);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{Frame, Grid, Table};
+
+    #[test]
+    fn rows_that_are_looked_at_know_what_lies_between_them() {
+        let (width, height) = (90, 301);
+        // Of so many rows one is looked at, by the side of a pixel.
+        for (resolution, step) in [(0.05, 2), (0.04, 3), (0.03, 3), (0.1, 1)] {
+            let mut random = 5u32;
+            let pixels: Vec<u8> = std::iter::repeat_with(|| {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                if random >> 8 < 1 << 15 { 0 } else { 254 }
+            })
+            .take(width * height)
+            .collect();
+            let (table, frame) = (Table::trinary(), Frame::new(width, height, resolution, [0.0; 3]));
+            let raster = Raster::new(&Grid::new(&pixels, true, &table, frame), 1, &Recall::new(None)).unwrap();
+            let part = Window::new(&raster, [7..61, 30..222]);
+            for made in [whole(&raster, 1), whole(&raster, 3), within(&raster, part, Vec::new())] {
+                let Window { columns, rows, .. } = made.window.clone();
+                assert_eq!(made.window.step, step);
+                let is_taken = |x: usize, y: usize| {
+                    let is_inside = columns.start < x && x + 1 < columns.end && rows.start < y && y + 1 < rows.end;
+                    !is_inside || !raster.free.get(y * raster.width + x)
+                };
+                let squared = |x: usize, y: usize| {
+                    let taken = rows.clone().flat_map(|b| columns.clone().map(move |a| [a, b]));
+                    let taken = taken.filter(|&[a, b]| a.abs_diff(x) < 9 && b.abs_diff(y) < 9 && is_taken(a, b));
+                    taken.map(|[a, b]| a.abs_diff(x).pow(2) + b.abs_diff(y).pow(2)).min()
+                };
+                for n in (0..made.window.count()).step_by(7) {
+                    for (x, own) in columns.clone().zip(made.row(n)).step_by(5) {
+                        // What is farther has not been looked for here.
+                        let least = squared(x, made.window.row(n)).filter(|least| *least < 81);
+                        assert!(least.map_or(*own >= 81, |least| least == *own as usize), "{step} {x} {n}");
+                    }
+                }
+            }
+        }
     }
 }

@@ -13,6 +13,7 @@ mod doorways;
 mod fill;
 mod fine;
 mod gaps;
+mod heights;
 mod islands;
 mod joining;
 mod leaves;

@@ -4,6 +4,7 @@ use super::super::recall::{Key, Recall};
 use super::blocks::Blocks;
 use super::clearance::{Clearance, Rows, within};
 use super::gaps::Bar;
+use super::heights::Window;
 use super::raster::Raster;
 use crate::bands::map_each_in;
 use crate::ends::holds;
@@ -14,8 +15,6 @@ use std::ops::Range;
 const NARROW: f64 = 0.85;
 /// Narrower than this, metres, is a crack, wider is no opening.
 const WIDTHS: (f64, f64) = (0.3, 4.0);
-/// Basins are of blocks about so large, metres: what a narrow parts is larger.
-const BLOCK: f64 = 0.1;
 /// The pixels that a narrow lies between are within so many pixels of its clearance,
 const TOUCH: f64 = 1.6;
 /// and so far from side by side, as the cosine of the angle between them.
@@ -39,22 +38,18 @@ pub fn find(raster: &Raster, clearance: &Clearance, threads: usize, recall: &Rec
     let wider = |range: &Range<usize>, size: usize| range.start.saturating_sub(around)..(range.end + around).min(size);
     map_each_in(squares.len(), threads, |room: &mut Vec<u32>, n| {
         let [columns, rows] = &squares[n];
-        let window = [wider(columns, raster.width), wider(rows, raster.height)];
+        let window = Window::new(raster, [wider(columns, raster.width), wider(rows, raster.height)]);
         let mut find = || {
-            let (found, corner) = if let Some(pixels) = clearance.whole() {
-                (Window::new(raster, pixels, window.clone()).narrows(), [0; 2])
+            let found = if let Some(pixels) = clearance.whole() {
+                Part::new(raster, pixels, &window).narrows()
             } else {
-                let corner = [0, 1].map(|axis| window[axis].start);
                 let pixels = within(raster, window.clone(), std::mem::take(room));
-                let found = Window::new(raster, &pixels, [0..pixels.width, 0..pixels.height]).narrows();
+                let found = Part::new(raster, &pixels, &window).narrows();
                 *room = pixels.into_room();
-                (found, corner)
+                found
             };
-            let own = found
-                .into_iter()
-                .filter(|([x, y], _)| columns.contains(&(x + corner[0])) && rows.contains(&(y + corner[1])));
-            let moved = |end: [f64; 2]| [end[0] + corner[0] as f64, end[1] + corner[1] as f64];
-            own.map(|(_, Bar { ends })| Bar { ends: ends.map(moved) }).collect::<Vec<_>>()
+            let own = found.into_iter().filter(|([x, y], _)| columns.contains(x) && rows.contains(y));
+            own.map(|(_, bar)| bar).collect::<Vec<_>>()
         };
         // Clearances that are kept know what lies beyond the window.
         if clearance.whole().is_some() { find() } else { recall.narrows.or_find(|| seen(raster, &window), find) }
@@ -63,25 +58,25 @@ pub fn find(raster: &Raster, clearance: &Clearance, threads: usize, recall: &Rec
 }
 
 /// What is free within a window.
-fn seen(raster: &Raster, [columns, rows]: &[Range<usize>; 2]) -> Key {
+fn seen(raster: &Raster, Window { columns, rows, .. }: &Window) -> Key {
     let start = Key::default().number(raster.resolution).with(raster.width as u64);
     let row = |y: usize| y * raster.width + columns.start..y * raster.width + columns.end;
     rows.clone().map(row).fold(start, |key, row| key.bits(&raster.free, row))
 }
 
 /// Part of the free space.
-struct Window<'a> {
+struct Part<'a> {
+    raster: &'a Raster,
     pixels: &'a Rows,
     /// Squared clearances of narrows in pixels: from, to.
     narrows: [f64; 2],
     blocks: Blocks,
 }
 
-impl<'a> Window<'a> {
-    fn new(raster: &Raster, pixels: &'a Rows, window: [Range<usize>; 2]) -> Self {
+impl<'a> Part<'a> {
+    fn new(raster: &'a Raster, pixels: &'a Rows, window: &Window) -> Self {
         let narrows = [WIDTHS.0, WIDTHS.1].map(|metres| (raster.pixels(metres) / 2.0).powi(2));
-        let side = raster.pixels(BLOCK).round().max(1.0) as usize;
-        Self { pixels, narrows, blocks: Blocks::new(side, pixels, window) }
+        Self { raster, pixels, narrows, blocks: Blocks::new(raster, pixels, window) }
     }
 
     /// The pixel in the middle of each narrow and its closure.
@@ -112,9 +107,11 @@ impl<'a> Window<'a> {
     fn narrowest(&self, block: usize) -> Option<([usize; 2], Bar)> {
         let beside = std::iter::once(block).chain(self.blocks.beside(block));
         let free = beside.filter(|&block| self.blocks.clearance[block] != 0);
-        let pixels = free.map(|block| self.blocks.widest(block, self.pixels));
-        let is_narrow = |&[x, y]: &[usize; 2]| holds(self.narrows, f64::from(self.pixels.row(y)[x]));
-        let closures = pixels.filter(is_narrow).filter_map(|pixel| self.closure(pixel).map(|bar| (pixel, bar)));
+        let narrow = free.filter(|&block| holds(self.narrows, f64::from(self.blocks.clearance[block])));
+        let closures = narrow.filter_map(|block| {
+            let pixel = self.blocks.widest(block, self.pixels);
+            self.closure(pixel, self.blocks.clearance[block]).map(|bar| (pixel, bar))
+        });
         closures.min_by(|a, b| a.1.length().total_cmp(&b.1.length()))
     }
 
@@ -201,25 +198,28 @@ impl<'a> Window<'a> {
     }
 
     /// From the nearest pixel that is not free to the nearest one across.
-    fn closure(&self, [x, y]: [usize; 2]) -> Option<Bar> {
-        let Rows { width, height, .. } = *self.pixels;
-        let clearance = f64::from(self.pixels.row(y)[x]);
-        let reach = clearance.sqrt() + TOUCH;
+    fn closure(&self, [x, y]: [usize; 2], clearance: u32) -> Option<Bar> {
+        let Raster { width, height, ref free, .. } = *self.raster;
+        let clearance = f64::from(clearance);
+        let reach = clearance.sqrt() + TOUCH + (self.pixels.window.step / 2) as f64;
         let (cx, cy) = (x as i64, y as i64);
         let span = reach.ceil() as i64;
         let mut touched: Vec<(i64, i64, i64)> = Vec::with_capacity(8 * span as usize);
         for y in (cy - span).max(0)..=(cy + span).min(height as i64 - 1) {
-            let row = self.pixels.row(y as usize);
             // What is nearer than its clearance is free.
             let across = |squared: f64| (squared - ((y - cy) * (y - cy)) as f64).max(0.0).sqrt();
             // Rounded up and down, without the calls that these are on machines that may lack the instructions.
             let (nearest, to) = (across(clearance), across(reach * reach) as i64);
             let from = nearest as i64 + i64::from(nearest > (nearest as i64) as f64);
-            let sides = (cx - to..=cx - from).chain(cx + from.max(1)..=cx + to);
-            for x in sides.filter(|x| (0..width as i64).contains(x)) {
-                let squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
-                if squared as f64 <= reach * reach && row[x as usize] == 0 {
-                    touched.push((squared, x, y));
+            let row = y as usize * width;
+            for (from, to) in [(cx - to, cx - from), (cx + from.max(1), cx + to)] {
+                let pixels = row + from.max(0) as usize..row + (to + 1).clamp(0, width as i64) as usize;
+                for pixel in free.runs(pixels, false).flatten() {
+                    let x = (pixel - row) as i64;
+                    let squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
+                    if squared as f64 <= reach * reach {
+                        touched.push((squared, x, y));
+                    }
                 }
             }
         }

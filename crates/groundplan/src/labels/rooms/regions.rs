@@ -24,7 +24,7 @@ const HALL: f64 = 150.0;
 const ROW: f64 = 1.0;
 /// Of a region's extent so much at each end does not count, and it is measured by about so many pixels.
 const STICKS_OUT: f64 = 0.03;
-const SAMPLES: usize = 2_000;
+const SAMPLES: usize = 500;
 /// So many regions are worth a thread's while.
 const SOME: usize = 8;
 /// What lies for the most part within a rack, by so many looks, is a gap between its goods.
@@ -36,8 +36,9 @@ pub struct Region {
     pixels: usize,
     /// The pixel farthest from all walls.
     pub at: usize,
-    /// Sum of all pixels' distances to the nearest wall.
+    /// Sum of distances to the nearest wall, and of how many pixels.
     distances: f64,
+    measured: usize,
     /// Its middle in the squares that give names.
     pub place: [f64; 2],
 }
@@ -46,7 +47,7 @@ impl Region {
     /// By its shape, its doors and its square metres.
     pub fn purpose(&self, raster: &Raster, doors: usize, area: f64) -> Purpose {
         // The mean distance to the walls of a long strip is a quarter of its width.
-        let width = 4.0 * self.distances / self.pixels as f64;
+        let width = 4.0 * self.distances / self.measured.max(1) as f64;
         let length = self.pixels as f64 / width;
         let is_long = length >= LONG * width && doors as f64 * raster.pixels(DOOR_EVERY) >= length;
         if doors >= 2 && is_long {
@@ -70,23 +71,29 @@ struct Piece {
     /// The greatest squared distance to what is not free, and the first pixel that has it.
     widest: u32,
     at: usize,
-    /// Sum of all pixels' distances.
+    /// Sum of distances, and of how many pixels.
     distances: f64,
+    measured: usize,
 }
 
 impl Piece {
     /// And a run more.
-    fn add(&mut self, run: &Run, seen: usize, width: Width) {
+    fn add(&mut self, run: &Run, seen: usize) {
         if self.pixels == 0 {
-            self.first = run.pixels().start;
-        }
-        if self.pixels == 0 || width.most > self.widest {
-            self.widest = width.most;
-            self.at = run.pixels().start + width.at as usize;
+            (self.first, self.at) = (run.pixels().start, run.pixels().start);
         }
         self.region = run.number;
         self.pixels += run.len();
         self.seen += seen;
+    }
+
+    /// And how wide it is along one.
+    fn measure(&mut self, run: &Run, width: Width) {
+        if width.most > self.widest {
+            self.widest = width.most;
+            self.at = run.pixels().start + width.at as usize;
+        }
+        self.measured += run.len();
         self.distances += width.sum;
     }
 }
@@ -101,9 +108,11 @@ pub fn find(
 ) -> (Vec<Region>, Runs) {
     let (pieces, count) = numbers.pieces();
     let mut all = vec![Piece::default(); count + 1];
+    for (run, &piece) in numbers.all.iter().zip(&pieces) {
+        all[piece as usize].add(run, run.len() - raster.islands.filled.within(run));
+    }
     clearance.along(raster, &numbers, evidence.threads, evidence.recall, |n, width| {
-        let seen = numbers.all[n].len() - raster.islands.filled.within(&numbers.all[n]);
-        all[pieces[n] as usize].add(&numbers.all[n], seen, width);
+        all[pieces[n] as usize].measure(&numbers.all[n], width);
     });
     let mut largest = BTreeMap::new();
     for (n, piece) in all.iter().enumerate().skip(1) {
@@ -141,8 +150,9 @@ pub fn find(
     numbers.all.iter_mut().zip(&pieces).for_each(|(run, &piece)| run.number = names[piece as usize]);
     drop(pieces);
     let numbers = fill_runs(raster, numbers);
-    let mut regions: Vec<Region> =
-        (1..=count).map(|number| Region { number, pixels: 0, at: 0, distances: 0.0, place: [0.0; 2] }).collect();
+    let mut regions: Vec<Region> = (1..=count)
+        .map(|number| Region { number, pixels: 0, at: 0, distances: 0.0, measured: 0, place: [0.0; 2] })
+        .collect();
     for run in &numbers.all {
         regions[run.number as usize - 1].pixels += run.len();
     }
@@ -153,6 +163,7 @@ pub fn find(
         let Some(place) = (number as usize).checked_sub(1) else { continue };
         let region = &mut regions[place];
         region.distances += piece.distances;
+        region.measured += piece.measured;
         if piece.widest > widest[place] || piece.widest == widest[place] && piece.at < region.at {
             (widest[place], region.at) = (piece.widest, piece.at);
         }
