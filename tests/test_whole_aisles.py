@@ -203,3 +203,16 @@ def test_an_aisle_ends_at_the_wall_though_the_last_bay_on_one_side_is_empty() ->
     survey = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION, origin=(0, 0))
     ends = sorted(label["at"][1] for label in survey.of_kind("junction") if label["type"] == "end")
     assert ends == pytest.approx([2.5, 6.7, 10.9, 14.3], abs=0.2)
+
+
+def test_where_a_row_ends_before_the_wall_the_aisles_beside_it_lead_round_its_head() -> None:
+    # Four rows of 0.6 m, 2.2 m apart, between aisles that end at a wall; one of the rows ends 3.2 m before that.
+    picture = np.full((308, 644), 205, np.uint8)
+    picture[18:290, 18:626] = 0
+    picture[20:288, 20:624] = 254
+    for n in range(4):
+        low = 20 + 44 + n * 56
+        picture[low : low + 12, 20 + (64 if n == 1 else 0) : 520] = 0
+    survey = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION, origin=(0, 0))
+    ends = sorted(label["at"][1] for label in survey.of_kind("junction") if label["type"] == "end")
+    assert ends == pytest.approx([2.1, 10.5, 13.3], abs=0.3)

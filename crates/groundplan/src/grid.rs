@@ -225,8 +225,8 @@ pub(crate) fn rounded(value: f64) -> f64 {
     if value.abs() < 4_503_599_627_370_496.0 { rounded } else { value }
 }
 
-/// The whole part of what is no less than zero, as an index; no more than 2^32. By way of 32 bits, which is a step less for
-/// most machines than 64 are.
+/// The whole part of a number as an index: of what is below zero nothing, and 2^32 - 1 at most. By way of 32 bits, which is a
+/// step less for most machines than 64 are.
 pub(crate) fn whole(value: f64) -> usize {
     value as u32 as usize
 }

@@ -4,6 +4,7 @@ use super::beside::placed;
 use super::corridors::{self, Strip};
 use super::meeting::{CLUTTER, LEAST_SINE, Meeting, SAME, SHORT, meet, nearest, of_each};
 use super::near::Near;
+use super::rows::{self, DEPTH};
 use super::shut::{self, LOOK, goes_on, sign};
 use super::turned::{Turned, least_sine};
 use crate::bands::flat_map_each;
@@ -103,7 +104,12 @@ pub fn ends(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<(us
             if met {
                 continue;
             }
-            let Some(place) = shut::end(view, strip, side) else { continue };
+            let beside = || {
+                let near = placed[strip.direction].touching(strip.along, wider(strip.across, DEPTH.1)).into_iter();
+                let others = near.filter(|m| *m != n).map(|m| &strips[m]);
+                rows::facing(strip, others.filter(|other| overlap(other.along, strip.along) > 0.0))
+            };
+            let Some(place) = shut::end(view, strip, side, beside) else { continue };
             let near = placed[strip.direction].touching(wider([place; 2], LOOK), strip.across);
             if !near.into_iter().any(|m| m != n && goes_on_beside(view, strip, side, place, &strips[m])) {
                 found.push((n, side, place));

@@ -253,7 +253,7 @@ pub fn is_within_row(strips: &[Strip], placed: &[Beside], n: usize) -> bool {
 }
 
 /// Where the nearest of some strips beside another end and begin, below it and above it; nowhere where there are none.
-fn facing<'a>(own: &Strip, strips: impl Iterator<Item = &'a Strip> + Clone) -> [f64; 2] {
+pub fn facing<'a>(own: &Strip, strips: impl Iterator<Item = &'a Strip> + Clone) -> [f64; 2] {
     let below = strips.clone().map(|strip| strip.across[1]).filter(|v| *v <= own.across[0] + SAME);
     let above = strips.map(|strip| strip.across[0]).filter(|v| *v >= own.across[1] - SAME);
     [below.fold(f64::NEG_INFINITY, f64::max), above.fold(f64::INFINITY, f64::min)]

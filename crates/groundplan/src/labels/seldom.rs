@@ -11,12 +11,12 @@ const TWO: f64 = 1.5;
 /// What is open over so much of a width is as wide.
 const AS_WIDE: f64 = 0.85;
 /// So many cells on either side of what is open are of its ends.
-const BETWEEN_CELLS: usize = 2;
+const ENDS: usize = 2;
 /// Fewer such rows tell nothing.
 const ROWS: usize = 2;
-/// It is not by chance that as many places are open when that is less likely than this; nor where little else of the rows is
-/// open when that is less likely than this.
+/// It is not by chance that as many places are open when that is less likely than this.
 const UNLIKELY: f64 = 0.01;
+/// The same where each of the rows is open at as many, which chance seldom makes.
 const UNLIKELY_IN_FULL: f64 = 0.1;
 /// What is open of a half for less, metres, is between its goods.
 const SHELF: f64 = 0.5;
@@ -54,33 +54,35 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f
     is_more_than_chance(open, half_open as f64, places)
 }
 
-/// True when rows side by side are open at places of a width, and so little else of each one's halves is that as many would
-/// hardly be by chance: no shelves are empty there. What lies past the rows' ends is open as well, so that a gap or two in short
-/// rows tell nothing.
+/// True when rows side by side are each open at as many places of a width, as where a way leads through each, and so little else
+/// of their halves is that as many would hardly be by chance: no shelves are empty there.
 pub fn are_full_elsewhere<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f64) -> bool {
-    let (mut open, mut free, mut all) = (0, 0, 0);
-    let [least, most] = [AS_WIDE * width / view.cell, width / AS_WIDE / view.cell + BETWEEN_CELLS as f64];
+    let (mut ways, mut free, mut all) = (Vec::new(), 0, 0);
+    let [least, most] = [AS_WIDE * width / view.cell, width / AS_WIDE / view.cell + ENDS as f64];
     for row in rows {
         let mut halves = open_halves(view, row);
         let count = halves[0].len();
         let is_within = |&(from, to): &(usize, usize)| from > 0 && to < count;
         let is_as_wide = |&(from, to): &(usize, usize)| (least..=most).contains(&((to - from) as f64));
-        let ways = runs(&both_open(&halves), true);
-        for (from, to) in ways.into_iter().filter(is_within).filter(is_as_wide) {
-            open += 1;
-            let beside = from.saturating_sub(BETWEEN_CELLS)..(to + BETWEEN_CELLS).min(count);
-            all -= 2 * beside.len() as i64;
-            for half in &mut halves {
-                half[beside.clone()].fill(false);
-            }
+        let open: Vec<_> = runs(&both_open(&halves), true).into_iter().filter(is_within).filter(is_as_wide).collect();
+        let mut is_elsewhere = vec![true; count];
+        for &(from, to) in &open {
+            let beside = from.saturating_sub(ENDS)..(to + ENDS).min(count);
+            is_elsewhere[beside.clone()].fill(false);
+            halves.iter_mut().for_each(|half| half[beside.clone()].fill(false));
         }
-        all += 2 * count as i64;
+        ways.push(open.len());
+        all += 2 * is_elsewhere.into_iter().filter(|is| *is).count();
         let lengths = halves.iter().flat_map(|half| runs(half, true)).map(|(from, to)| to - from);
         free += lengths.filter(|length| *length as f64 >= SHELF / view.cell).sum::<usize>();
     }
+    if ways.iter().any(|n| *n != ways[0]) {
+        return false;
+    }
+    // Half a place more is open and one more is there, as so few tell little.
     let [free, all, own] = [free as f64, all as f64, width / view.cell];
-    let share = (free + 0.5 * own) / (all + own).max(1.0);
-    chance(open, all / 2.0 / own * share * share) < UNLIKELY_IN_FULL
+    let share = (free + 0.5 * own) / (all + own);
+    chance(ways.iter().sum(), all / 2.0 / own * share * share) < UNLIKELY_IN_FULL
 }
 
 /// In which columns each half of a row is open.

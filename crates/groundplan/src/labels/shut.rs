@@ -38,9 +38,12 @@ pub fn is_shut(views: &[Turned], strip: &Strip, side: usize) -> bool {
 }
 
 /// Where a strip ends: at what closes it near one of its ends, or no further off than bays are long, where one of its sides
-/// goes on to that; the last bay on the other side is empty.
-pub fn end(view: &Turned, strip: &Strip, side: usize) -> Option<f64> {
-    let is_sided_to = |place: &f64| sided::is_sided_by_bays(view, strip, sorted([strip.along[side], *place]));
+/// goes on to that; the last bay on the other side is empty, before what another strip beside it lies behind.
+pub fn end(view: &Turned, strip: &Strip, side: usize, beside: impl FnOnce() -> [f64; 2]) -> Option<f64> {
+    let is_sided_to = |place: &f64| {
+        let along = sorted([strip.along[side], *place]);
+        sided::is_sided_by_bays(view, strip, along, beside())
+    };
     closed(view, strip, side, LOOK).or_else(|| closed(view, strip, side, LONGEST).filter(is_sided_to))
 }
 

@@ -21,21 +21,27 @@ const BEYOND: (f64, f64) = (0.3, 1.3);
 const FLOOR: f64 = 0.5;
 /// Things are parted by more than so many metres.
 const PARTED: f64 = 0.3;
+/// What bays are empty before stands so near to the strip behind them, metres.
+const FACE: f64 = 0.3;
 
 /// True when something that is not free stands along both sides of a strip.
 pub fn is_sided(view: &Turned, strip: &Strip) -> bool {
     are_sided(view, strip, strip.along).into_iter().all(|is_sided| is_sided)
 }
 
-/// True when something does along one of them between two places, and beside the other no further off than a row is deep.
-pub fn is_sided_by_bays(view: &Turned, strip: &Strip, along: [f64; 2]) -> bool {
+/// True when something does along one of them between two places, and before the nearest strip on the other side something
+/// stands there, no further off than a row is deep: behind bays, of which the last are empty.
+pub fn is_sided_by_bays(view: &Turned, strip: &Strip, along: [f64; 2], beside: [f64; 2]) -> bool {
     let columns = view.column(along[0])..view.column(along[1]);
     let [low, high] = strip.across;
-    let ends_bays = [[low - DEPTH.1, low], [high, high + DEPTH.1]].map(|[low, high]| {
-        let stands = view.some_occupied(columns.clone(), low, high);
+    let behind = [[(low - DEPTH.1).max(beside[0] - FACE), low], [high, (high + DEPTH.1).min(beside[1] + FACE)]];
+    let is_row = |side: usize| {
+        let stands = view.some_occupied(columns.clone(), behind[side][0], behind[side][1]);
         stands.iter().filter(|share| **share > 0.0).count() as f64 >= SIDED * columns.len() as f64
-    });
-    are_sided(view, strip, along).into_iter().any(|is_sided| is_sided) && ends_bays.into_iter().all(|ends| ends)
+    };
+    let sided = are_sided(view, strip, along);
+    // Where no strip is beside there are no racks.
+    beside.iter().any(|place| place.is_finite()) && (0..2).any(|side| sided[side] && is_row(1 - side))
 }
 
 /// Along which of a strip's sides something that is not free stands between two places.
