@@ -155,3 +155,15 @@ def test_legs_anyhow_are_no_racks() -> None:
 def test_a_grid_of_thin_posts_as_far_apart_along_as_across_is_no_rack() -> None:
     boxes = ((x, y, x + 0.1, y + 0.1) for x in np.arange(3.0, 20.0, 1.5) for y in np.arange(3.0, 20.0, 1.5))
     assert counts(hall(23.0, 23.0, boxes))["rack"] == 0
+
+
+def test_a_way_through_racks_whose_legs_stand_a_bay_apart_beside_it_is_told_by_the_goods_in_the_others() -> None:
+    def boxes() -> Iterator[Box]:
+        for n in range(3):
+            yield from legs(4.0, 3.0 + 4.1 * n, 9, 1.1, 2.7)
+            for bay in set(range(9)) - {5}:
+                yield 4.35 + 2.7 * bay, 3.1 + 4.1 * n, 6.45 + 2.7 * bay, 4.0 + 4.1 * n
+
+    survey = groundplan.survey(hall(32.3, 15.3, boxes()), resolution=RESOLUTION)
+    types = [junction["type"] for junction in survey.of_kind("junction")]
+    assert sorted(types) == ["L"] * 4 + ["T"] * 6 + ["X"] * 2

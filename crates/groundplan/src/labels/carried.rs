@@ -60,6 +60,20 @@ pub fn without_ways(evidence: &Evidence, views: &[Turned], strips: &[Strip], on_
     racks
 }
 
+/// Racks on legs, without what of their ground some ways lead over.
+pub fn left_beside(views: &[Turned], strips: &[Strip], on_legs: &[Row]) -> Vec<Row> {
+    let mut racks = on_legs.to_vec();
+    for strip in strips {
+        let left = |rack: &Row| {
+            let lead = Lead { views: [rack.direction, strip.direction].map(|n| &views[n]), row: rack, strip };
+            let is_there = rack.direction != strip.direction && overlap(lead.along(rack.across), strip.along) > 0.0;
+            if is_there { lead.left_of(rack) } else { vec![rack.clone()] }
+        };
+        racks = racks.iter().flat_map(left).collect();
+    }
+    racks
+}
+
 /// Of all strips that lead through rows and end before another one, through which none leads there: the number of each, with
 /// the row before it, and the middles of the aisles beside that.
 fn each(views: &[Turned], strips: &[Strip], mut tell: impl FnMut(usize, &Lead, [f64; 2])) {

@@ -21,6 +21,8 @@ use std::ops::Range;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
 const IN_LINE: (f64, f64) = (0.7, 0.5);
+/// Rows that hold goods are open over less than this share of their length.
+const OPEN: f64 = 0.5;
 /// Directions are square to each other but for an angle of this sine.
 const SQUARE: f64 = 0.05;
 
@@ -37,15 +39,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let placed = placed(views, strips.iter().map(Strip::place));
     let widest = corridors::widest(strips);
     let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, &placed, widest, row)).collect();
-    let seen = flat_map_each(rows.len(), evidence.threads, |n| {
-        let (row, reaching) = (&rows[n], &reaching[n]);
-        let (between, other) = (row.between?, crossing(views, row.direction)?);
-        let view = &views[row.direction];
-        let middles = between.map(|n| strips[n].middle());
-        let widest = between.map(|n| strips[n].width()).into_iter().fold(0.0, f64::max);
-        let columns = Columns::new(look, &evidence.grid.frame, [view, other], reaching, view.pitch);
-        Some(Seen { own: row.along, row: reaching, columns, views: [view, other], between, middles, widest })
-    });
+    let seen = seen(evidence, look, views, strips, rows, &reaching);
     for row in &seen {
         for way in row.columns.ways() {
             let found = if row.columns.is_as_bays(way) { &mut doubtful } else { &mut gates };
@@ -87,6 +81,48 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let ways = in_line(gates);
     out_of_step.retain(|gate| !ways.iter().any(|way| is_in(gate, way)));
     Gates { ways, out_of_step: in_line(out_of_step) }
+}
+
+/// The rows with what is asked of them.
+fn seen<'a>(
+    evidence: &'a Evidence,
+    look: &'a Look,
+    views: &'a [Turned],
+    strips: &[Strip],
+    rows: &'a [Row],
+    reaching: &'a [Row],
+) -> Vec<Seen<'a>> {
+    flat_map_each(rows.len(), evidence.threads, |n| {
+        let (row, reaching) = (&rows[n], &reaching[n]);
+        let (between, other) = (row.between?, crossing(views, row.direction)?);
+        let view = &views[row.direction];
+        let middles = between.map(|n| strips[n].middle());
+        let widest = between.map(|n| strips[n].width()).into_iter().fold(0.0, f64::max);
+        let columns = Columns::new(look, &evidence.grid.frame, [view, other], reaching, view.pitch);
+        Some(Seen { own: row.along, row: reaching, columns, views: [view, other], between, middles, widest })
+    })
+}
+
+/// What leads through several rows, by where all of them are free, between the ends of some that mostly are not.
+pub fn through_several(
+    evidence: &Evidence,
+    look: &Look,
+    views: &[Turned],
+    strips: &[Strip],
+    rows: &[Row],
+) -> Vec<Strip> {
+    let seen = seen(evidence, look, views, strips, rows, rows);
+    let open = |row: &Seen| row.columns.open().iter().map(|[from, to]| to - from).sum::<f64>();
+    let taken: Vec<&Row> = seen.iter().filter(|row| open(row) < OPEN * row.row.length()).map(|row| row.row).collect();
+    let mut sure = Widths::of(views, strips.iter().filter(|strip| !strip.bays));
+    let mut ways = in_line(Through::new(views, seen).find(strips, &mut sure, |_| false));
+    let leads_through = |way: &Strip, row: &Row| {
+        let middle = f64::midpoint(row.across[0], row.across[1]);
+        let [s, u] = views[row.direction].crossing(&views[way.direction], middle, way.middle());
+        holds(way.along, s) && holds(wider(row.along, -way.width()), u)
+    };
+    ways.retain(|way| taken.iter().any(|row| row.direction != way.direction && leads_through(way, row)));
+    ways
 }
 
 /// The ways through a direction's rows that are out of step with their bays.

@@ -1,5 +1,6 @@
 //! II-E: what the parts of the map are.
 
+mod alone;
 mod at_walls;
 mod barriers;
 mod bays;
@@ -60,6 +61,7 @@ mod shares;
 mod shut;
 mod sided;
 mod sketch;
+mod slots;
 mod squares;
 mod step;
 mod stretches;

@@ -25,6 +25,7 @@ use super::ragged::{self, Ways};
 use super::rooms::{Bar, Space};
 use super::rows::{self, Row};
 use super::shut;
+use super::slots;
 use super::turned::Turned;
 use super::uprights::{self, Upright};
 use super::whole;
@@ -144,12 +145,23 @@ fn planned(evidence: &Evidence, look: &Look, views: Vec<Turned>, on_legs: &[Row]
     if on_legs.is_empty() {
         return (views, plan);
     }
-    let left = carried::without_ways(evidence, &views, &joined::apart(&views, across), on_legs);
+    // Goods that stand between legs tell where there are none.
+    let over = gates::through_several(evidence, look, &seen(evidence, look, &[]), &plan.strips, &plan.rows);
+    let left = carried::left_beside(&views, &over, on_legs);
+    let left = carried::without_ways(evidence, &views, &joined::apart(&views, [across, over].concat()), &left);
     if left == on_legs {
         return (views, plan);
     }
+    let views = seen(evidence, look, &left);
+    let (plan, _) = Plan::of(evidence, look, &views, &left);
+    (views, plan)
+}
+
+/// What is seen where some racks stand on legs.
+fn seen(evidence: &Evidence, look: &Look, on_legs: &[Row]) -> Vec<Turned> {
     let scene = evidence.scene();
-    let mut views: Vec<_> = (0..views.len()).map(|direction| Turned::new(&scene, direction, &left)).collect();
+    let count = evidence.directions.angles.len();
+    let mut views: Vec<_> = (0..count).map(|direction| Turned::new(&scene, direction, on_legs)).collect();
     quarter::see(&mut views, &scene, look);
     each(views.iter_mut().collect(), evidence.threads, |view: &mut Turned| {
         view.line(evidence);
@@ -157,8 +169,7 @@ fn planned(evidence: &Evidence, look: &Look, views: Vec<Turned>, on_legs: &[Row]
         view.recur(&evidence.shared_out());
     });
     panes::share(&mut views);
-    let (plan, _) = Plan::of(evidence, look, &views, &left);
-    (views, plan)
+    views
 }
 
 /// The ways, what they meet and where they end, and the rows between them.
@@ -186,6 +197,7 @@ impl Plan {
             |way: &Strip| beyond[way.direction].touching(way.along, way.across).into_iter().any(|n| on[n] == *way);
         found.retain(|way| !is_on(way));
         let found = rows::without_lanes(views, crossed::without_bays(evidence, look, views, found));
+        let found = slots::without(views, found);
         let threads = evidence.threads;
         let standing = Standing::new(views, evidence.recall, threads);
         // What was too short to stay bars no way whose sides are no lines, but tells how wide that is.

@@ -1,9 +1,9 @@
 //! Ways across rows are of one width: what leads through all rows of a place tells what leads through some of them.
 
+use super::alone::Alone;
 use super::beside::placed;
 use super::corridors::Strip;
 use super::passing::{Passing, Place};
-use super::pitch::LONGEST;
 use super::rows::SHORTEST;
 use super::sections::is_as_bays;
 use super::turned::Turned;
@@ -16,8 +16,6 @@ const ALIKE: f64 = 0.15;
 const REST: f64 = 6.0;
 /// A bay that is so much wider or narrower than a way, as a share of it, can be told from one.
 const APART: f64 = 0.1;
-/// Ways that lead through one row each are as many in each of so many rows at least.
-const ROWS: usize = 3;
 /// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
 const WALL: f64 = 0.9;
 const TAKEN: f64 = 0.2;
@@ -79,7 +77,7 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
         let whole = |n: &usize| passing[*n].rows.len() >= 2 && passing[*n].next.is_empty();
         let is_told_within = (0..strips.len()).filter(whole).any(|n| passing[n].is_within);
         let known = Widths((0..strips.len()).filter(whole).map(|n| strips[n].width()).collect());
-        let through = LazyCell::new(|| Through::new(&place, &strips));
+        let alone = LazyCell::new(|| Alone::new(&place, &strips));
         for (n, own) in passing.iter().enumerate() {
             let is_some = !own.rows.is_empty() && !own.next.is_empty() && own.rest <= REST && !known.is_empty();
             // Where the rows beside it go on to the wall, one that does not is empty there.
@@ -89,11 +87,12 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
             let is_no_bay = || {
                 !is_told_within
                     && (view.pitch.map_or_else(
-                        || through.is_longer_than_bays(own, width) || through.is_in_every_row(&place, own, width),
+                        || alone.is_longer_than_bays(own, width) || alone.is_in_every_row(&place, own, width),
                         |pitch| !is_as_bays(width, pitch),
                     ) || place.is_open_through(&strips, own, width))
             };
-            stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && !is_bay());
+            let is_as_bays_lie = || alone.is_as_bays_lie(&place, &strips, own, width);
+            stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && !is_bay() && !is_as_bays_lie());
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
             let is_beside = |m: usize| {
                 let [low, high] = shared(strips[n].across, strips[m].across);
@@ -105,45 +104,6 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     }
     let mut flags = stays.into_iter();
     strips.into_iter().filter(|_| flags.next().unwrap_or(true)).collect()
-}
-
-/// What leads through each of the rows of a place within it.
-struct Through {
-    /// How wide what leads through this one alone is, metres.
-    alone: Vec<Vec<f64>>,
-    /// Whether something leads through this one and others.
-    on: Vec<bool>,
-}
-
-impl Through {
-    fn new(place: &Place, strips: &[Strip]) -> Self {
-        let rows = place.rows.len();
-        let mut made = Self { alone: vec![Vec::new(); rows], on: vec![false; rows] };
-        for (strip, own) in strips.iter().zip(&place.passing).filter(|(_, own)| own.is_within) {
-            match own.rows[..] {
-                [row] => made.alone[row].push(strip.width()),
-                _ => own.rows.iter().for_each(|&row| made.on[row] = true),
-            }
-        }
-        made
-    }
-
-    /// True when it is longer than beams are, and nothing else as wide leads through its rows alone: bays recur.
-    fn is_longer_than_bays(&self, own: &Passing, width: f64) -> bool {
-        let is_as_wide = |other: &&f64| (*other - width).abs() <= ALIKE * width;
-        width > LONGEST && own.rows.iter().all(|&row| self.alone[row].iter().filter(is_as_wide).count() <= 1)
-    }
-
-    /// True when as many ways as wide as one lead through each of the rows of its place, and none through several: shelves
-    /// are empty anywhere.
-    fn is_in_every_row(&self, place: &Place, own: &Passing, width: f64) -> bool {
-        let &[row] = &own.rows[..] else { return false };
-        let rows = place.rows_with(row);
-        let is_as_wide = |other: &&f64| (*other - width).abs() <= ALIKE * width;
-        let alike = |row: usize| self.alone[row].iter().filter(is_as_wide).count();
-        let own_alike = alike(row);
-        rows.len() >= ROWS && rows.iter().all(|&n| !self.on[n] && alike(n) == own_alike)
-    }
 }
 
 /// True when a wall runs all along one side of a strip.

@@ -1,0 +1,70 @@
+//! What leads through one row alone: a way, where the rows beside have as many, or an empty bay, which may lie anywhere.
+
+use super::corridors::Strip;
+use super::passing::{Passing, Place};
+use super::pitch::LONGEST;
+
+/// What leads through rows alone is as wide as others but for this share.
+const ALIKE: f64 = 0.15;
+/// Ways that lead through one row each are as many in each of so many rows at least.
+const ROWS: usize = 3;
+/// What is so many times as wide as the aisles beside it is wider than a bay.
+const WIDER: f64 = 1.3;
+/// One row in so many is few, and where other ways lead through all rows, one in so many.
+const FEW: (usize, usize) = (4, 2);
+
+/// What leads through each of the rows of a place within it.
+pub struct Alone {
+    /// How wide what leads through this one alone is, metres.
+    alone: Vec<Vec<f64>>,
+    /// Whether something leads through this one and others.
+    on: Vec<bool>,
+}
+
+impl Alone {
+    pub fn new(place: &Place, strips: &[Strip]) -> Self {
+        let rows = place.rows.len();
+        let mut made = Self { alone: vec![Vec::new(); rows], on: vec![false; rows] };
+        for (strip, own) in strips.iter().zip(&place.passing).filter(|(_, own)| own.is_within) {
+            match own.rows[..] {
+                [row] => made.alone[row].push(strip.width()),
+                _ => own.rows.iter().for_each(|&row| made.on[row] = true),
+            }
+        }
+        made
+    }
+
+    /// True when it is longer than beams are, and nothing else as wide leads through its rows alone: bays recur.
+    pub fn is_longer_than_bays(&self, own: &Passing, width: f64) -> bool {
+        width > LONGEST && own.rows.iter().all(|&row| self.alike(row, width) <= 1)
+    }
+
+    /// True when it lies as empty bays do, and not as ways that are alike: through few of the rows of a place, or in half of them
+    /// where others lead through all. What is longer than beams, or much wider than the aisles beside it, is no bay.
+    pub fn is_as_bays_lie(&self, place: &Place, strips: &[Strip], own: &Passing, width: f64) -> bool {
+        let (&[row], true) = (&own.rows[..], own.is_within) else { return false };
+        let is_narrower = |&aisle: &usize| width < WIDER * strips[place.aisles[aisle]].width();
+        if width > LONGEST || !place.rows[row].1.iter().any(is_narrower) {
+            return false;
+        }
+        let rows = place.rows_with(row);
+        let with = rows.iter().filter(|&&n| self.alike(n, width) > 0).count();
+        let few = if rows.iter().all(|&n| self.on[n]) { FEW.1 } else { FEW.0 };
+        few * with <= rows.len()
+    }
+
+    /// True when as many ways as wide as one lead through each of the rows of its place, and none through several: shelves
+    /// are empty anywhere.
+    pub fn is_in_every_row(&self, place: &Place, own: &Passing, width: f64) -> bool {
+        let &[row] = &own.rows[..] else { return false };
+        let rows = place.rows_with(row);
+        let own_alike = self.alike(row, width);
+        rows.len() >= ROWS && rows.iter().all(|&n| !self.on[n] && self.alike(n, width) == own_alike)
+    }
+
+    /// How many as wide lead through a row alone.
+    fn alike(&self, row: usize, width: f64) -> usize {
+        let is_as_wide = |other: &&f64| (*other - width).abs() <= ALIKE * width;
+        self.alone[row].iter().filter(is_as_wide).count()
+    }
+}

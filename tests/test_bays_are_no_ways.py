@@ -1,0 +1,69 @@
+"""Empty places in racks that no way leads through, on maps that no simulator made up."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import groundplan
+
+Picture = npt.NDArray[np.uint8]
+
+RESOLUTION = 0.05
+AISLE, END = 64, 84  # pixels: 3.2 m between rows, 4.2 m before their heads
+
+
+def hall(rows: int, depth: int, length: int) -> tuple[Picture, list[Picture]]:
+    """A hall of rows without a gap, so many pixels deep and long, and each row's part of the picture."""
+    picture = np.full((40 + rows * depth + (rows + 1) * AISLE, 40 + 2 * END + length), 205, np.uint8)
+    picture[18:-18, 18:-18] = 0
+    picture[20:-20, 20:-20] = 254
+    lows = [20 + AISLE + n * (AISLE + depth) for n in range(rows)]
+    parts = [picture[low : low + depth, 20 + END : 20 + END + length] for low in lows]
+    for part in parts:
+        part[:] = 0
+    return picture, parts
+
+
+def ways_across(picture: Picture) -> list[float]:
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    return sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C"))
+
+
+HEADS = [END * RESOLUTION] * 2
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("sparse", [0.05, 0.15])
+def test_empty_bays_between_frames_as_deep_as_the_rack_are_no_ways(sparse: float, seed: int) -> None:
+    draws = np.random.default_rng(seed)
+    bay = 54
+    picture, rows = hall(4, 22, 12 * bay + 2)
+    for row in rows:
+        for n in np.flatnonzero(draws.random(12) < sparse).tolist():
+            row[:, n * bay + 2 : (n + 1) * bay] = 254
+    assert ways_across(picture) == pytest.approx(HEADS, abs=0.15)
+
+
+@pytest.mark.parametrize("slot", [20, 26])
+def test_slots_in_racks_of_several_pallets_depth_are_no_ways(slot: int) -> None:
+    picture, rows = hall(3, 88, 700)
+    for n, row in enumerate(rows):
+        row[:62, 120 + 30 * n : 120 + slot + 30 * n] = 254
+        row[20:, 400 + 50 * n : 400 + slot + 50 * n] = 254
+    # And one right through a row, as wide as a pallet.
+    rows[1][:, 600 : 600 + slot] = 254
+    assert ways_across(picture) == pytest.approx(HEADS, abs=0.15)
+
+
+@pytest.mark.parametrize(("width", "ways"), [(66, 1), (84, 2)])
+def test_where_ways_lead_through_all_rows_a_gap_in_one_of_them_is_a_way_if_it_is_longer_than_beams(
+    width: int, ways: int
+) -> None:
+    picture, rows = hall(4, 40, 900)
+    for row in rows:
+        row[:, 300:370] = 254
+    rows[2][:, 600 : 600 + width] = 254
+    across = ways_across(picture)
+    assert across == pytest.approx(sorted([*HEADS, 3.5, width * RESOLUTION][: 2 + ways]), abs=0.15)
