@@ -69,7 +69,9 @@ pub fn are_full_elsewhere<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>
         for &(from, to) in &open {
             let beside = from.saturating_sub(ENDS)..(to + ENDS).min(count);
             is_elsewhere[beside.clone()].fill(false);
-            halves.iter_mut().for_each(|half| half[beside.clone()].fill(false));
+            for half in &mut halves {
+                half[beside.clone()].fill(false);
+            }
         }
         ways.push(open.len());
         all += 2 * is_elsewhere.into_iter().filter(|is| *is).count();
