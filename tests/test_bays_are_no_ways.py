@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -67,3 +69,25 @@ def test_where_ways_lead_through_all_rows_a_gap_in_one_of_them_is_a_way_if_it_is
     rows[2][:, 600 : 600 + width] = 254
     across = ways_across(picture)
     assert across == pytest.approx(sorted([*HEADS, 3.5, width * RESOLUTION][: 2 + ways]), abs=0.15)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("gaps", [(4, 8, 6), (4, 8)])
+def test_a_gap_as_wide_as_a_bay_is_a_way_where_each_of_the_rows_has_one_between_the_ends_of_racks(
+    gaps: tuple[int, ...], seed: int
+) -> None:
+    # Of three rows of two racks back to back, one of which is empty in most bays.
+    draws = np.random.default_rng(seed)
+    bay, count = 58, 12
+    picture, rows = hall(3, 44, count * bay + 2)
+    for row, gap in itertools.zip_longest(rows, gaps):
+        row[:] = 254
+        for n, full in enumerate(draws.integers(1, 4, count).tolist()):
+            for rack in (0, 1):
+                if full & (rack + 1) and n != gap:
+                    row[2 + 21 * rack : 21 + 21 * rack, n * bay + 4 : (n + 1) * bay - 2] = 0
+        for post in range(count + 1):
+            row[[0, 1, -2, -1], post * bay : post * bay + 2] = 0
+        for end in (0, count) if gap is None else (0, gap, gap + 1, count):
+            row[:, end * bay : end * bay + 2] = 0
+    assert len(ways_across(picture)) == 2 + (len(gaps) if len(gaps) == len(rows) else 0)

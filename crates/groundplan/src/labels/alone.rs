@@ -3,9 +3,8 @@
 use super::corridors::Strip;
 use super::passing::{Passing, Place};
 use super::pitch::LONGEST;
+use super::widths::are_alike;
 
-/// What leads through rows alone is as wide as others but for this share.
-const ALIKE: f64 = 0.15;
 /// Ways that lead through one row each are as many in each of so many rows at least.
 const ROWS: usize = 3;
 /// What is so many times as wide as the aisles beside it is wider than a bay.
@@ -64,7 +63,6 @@ impl Alone {
 
     /// How many as wide lead through a row alone.
     fn alike(&self, row: usize, width: f64) -> usize {
-        let is_as_wide = |other: &&f64| (*other - width).abs() <= ALIKE * width;
-        self.alone[row].iter().filter(is_as_wide).count()
+        self.alone[row].iter().filter(|other| are_alike(**other, width)).count()
     }
 }

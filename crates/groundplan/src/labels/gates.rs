@@ -3,6 +3,7 @@
 use super::Evidence;
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
+use super::family;
 use super::look::Look;
 use super::passing::{self, Place};
 use super::rows::Row;
@@ -12,11 +13,12 @@ use super::step::{self, Section};
 use super::thin;
 use super::through::{BETWEEN_CELLS, Through};
 use super::turned::Turned;
-use super::widths::Widths;
+use super::widths::{self, Widths};
 use crate::bands::flat_map_each;
 use crate::bits::Bits;
 use crate::ends::{around, holds, overlap, wider};
 use std::cell::LazyCell;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
@@ -29,8 +31,8 @@ const SQUARE: f64 = 0.05;
 /// Ways through rows, as strips of the direction that crosses them.
 pub struct Gates {
     pub ways: Vec<Strip>,
-    /// Others that posts tell from bays, as wide as they may be.
-    pub out_of_step: Vec<Strip>,
+    /// Others that are told from bays, as wide as they may be.
+    pub as_bays: Vec<Strip>,
 }
 
 /// The ways through the rows between corridors.
@@ -46,7 +48,8 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
             found.extend(row.gate(way));
         }
     }
-    let mut out_of_step: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, &seen)).collect();
+    let mut as_bays: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, &seen)).collect();
+    as_bays.extend(in_each_row(&seen));
     let through = Through::new(views, seen);
     for (gate, is_doubtful) in through.at_walls(strips, &placed) {
         if is_doubtful { &mut doubtful } else { &mut gates }.push(gate);
@@ -79,8 +82,8 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     gates.extend(through);
     gates.extend(thin::gates(views, strips));
     let ways = in_line(gates);
-    out_of_step.retain(|gate| !ways.iter().any(|way| is_in(gate, way)));
-    Gates { ways, out_of_step: in_line(out_of_step) }
+    as_bays.retain(|gate| !ways.iter().any(|way| is_in(gate, way)));
+    Gates { ways, as_bays: in_line(as_bays) }
 }
 
 /// The rows with what is asked of them.
@@ -134,6 +137,33 @@ fn between_posts(view: &Turned, seen: &[Seen]) -> Vec<Strip> {
     let are_out = step::are_out(&sections, pitch);
     let out = rows.into_iter().zip(sections).zip(are_out).filter(|(_, is_out)| *is_out);
     out.filter_map(|((row, section), _)| row.gate(section.ends)).collect()
+}
+
+/// The ways through rows between the ends of racks that are as wide as bays, where as many lead through each of the rows one
+/// beside another there: bays are empty anywhere.
+fn in_each_row(seen: &[Seen]) -> Vec<Strip> {
+    let ways: Vec<Vec<[f64; 2]>> = seen.iter().map(|row| row.columns.ways()).collect();
+    let mut along: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (n, row) in seen.iter().enumerate() {
+        row.between.into_iter().for_each(|aisle| along.entry(aisle).or_default().push(n));
+    }
+    let width = |[from, to]: [f64; 2]| to - from;
+    let is_told = |n: usize, gate: &Strip, way: [f64; 2]| {
+        let alike = |m: usize| ways[m].iter().filter(|other| widths::are_alike(width(**other), width(way))).count();
+        let (mut beside, mut next) = (BTreeSet::from([n]), vec![n]);
+        while let Some(row) = next.pop() {
+            let near = seen[row].between.iter().flat_map(|aisle| &along[aisle]).copied();
+            next.extend(near.filter(|&m| seen[m].holds(gate.middle()) && beside.insert(m)));
+        }
+        width(way) >= family::LED_TO * seen[n].widest
+            && beside.len() > 1
+            && beside.into_iter().all(|m| alike(m) == alike(n))
+    };
+    let told = |n: usize| {
+        let ways = ways[n].iter().filter(move |way| seen[n].columns.is_as_bays(**way));
+        ways.filter_map(move |&way| seen[n].gate(way).filter(|gate| is_told(n, gate, way)))
+    };
+    (0..seen.len()).flat_map(told).collect()
 }
 
 /// True when one strip lies in another of its direction.

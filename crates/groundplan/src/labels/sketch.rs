@@ -216,12 +216,12 @@ impl Plan {
         if !cut.is_empty() && !plan.find_racks(views, on_legs, &standing, threads).is_empty() {
             plan = plan.with(views, &cut, least, threads);
         }
-        let Gates { ways, out_of_step } = gates::find(evidence, look, views, &plan.strips, &plan.rows);
-        let (known, more) = (plan.strips.len(), ways.len() + out_of_step.len());
+        let Gates { ways, as_bays } = gates::find(evidence, look, views, &plan.strips, &plan.rows);
+        let (known, more) = (plan.strips.len(), ways.len() + as_bays.len());
         plan.strips.extend(ways);
         let across = plan.strips.clone();
         plan.strips = widths::alike(views, plan.strips);
-        plan.strips.extend(out_of_step);
+        plan.strips.extend(as_bays);
         plan.strips = joined::apart(views, plan.strips);
         let carried = carried::on(evidence, look, views, plan.strips.clone());
         if more > 0 || plan.strips.len() < known || carried != plan.strips {

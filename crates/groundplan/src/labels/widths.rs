@@ -65,6 +65,11 @@ impl Widths {
     }
 }
 
+/// True when one width is another but for as little as those of ways differ by.
+pub fn are_alike(one: f64, other: f64) -> bool {
+    (one - other).abs() <= ALIKE * other
+}
+
 /// The strips without those that lead through some rows of a place and have no width of what leads through all: bays; nor
 /// those at a wall that the rows beside go on to. Where nothing leads through all but past their ends, what has no bays'
 /// width is none, nor what leads through rows of two racks that are open more often than by chance. Nor those beside which,
