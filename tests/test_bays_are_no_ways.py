@@ -1,8 +1,9 @@
-"""Empty places in racks that no way leads through, on maps that no simulator made up."""
+"""Empty places in racks that no way leads through, and some that are like them, on maps that no simulator made up."""
 
 from __future__ import annotations
 
 import itertools
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt

@@ -4,6 +4,7 @@
 use super::Evidence;
 use super::beside::{Beside, placed};
 use super::corridors::Strip;
+use super::gates::crossing;
 use super::look::Look;
 use super::passing::Place;
 use super::rows::{Row, SHORTEST};
@@ -66,7 +67,8 @@ pub fn left_beside(views: &[Turned], strips: &[Strip], on_legs: &[Row]) -> Vec<R
     for strip in strips {
         let left = |rack: &Row| {
             let lead = Lead { views: [rack.direction, strip.direction].map(|n| &views[n]), row: rack, strip };
-            let is_there = rack.direction != strip.direction && overlap(lead.along(rack.across), strip.along) > 0.0;
+            let is_across = crossing(views, rack.direction).is_some_and(|view| view.direction == strip.direction);
+            let is_there = is_across && overlap(lead.along(rack.across), strip.along) > 0.0;
             if is_there { lead.left_of(rack) } else { vec![rack.clone()] }
         };
         racks = racks.iter().flat_map(left).collect();

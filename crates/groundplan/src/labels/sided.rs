@@ -40,7 +40,7 @@ pub fn is_sided_by_bays(view: &Turned, strip: &Strip, along: [f64; 2], beside: [
         stands.iter().filter(|share| **share > 0.0).count() as f64 >= SIDED * columns.len() as f64
     };
     let sided = are_sided(view, strip, along);
-    // Where no strip is beside there are no racks.
+    // Racks stand beside one aisle alone in few places, and things that are none in many.
     beside.iter().any(|place| place.is_finite()) && (0..2).any(|side| sided[side] && is_row(1 - side))
 }
 

@@ -142,7 +142,7 @@ impl Sketch {
 /// left beside the ways.
 fn planned(evidence: &Evidence, look: &Look, views: Vec<Turned>, on_legs: &[Row]) -> (Vec<Turned>, Plan) {
     let (plan, across) = Plan::of(evidence, look, &views, on_legs);
-    if on_legs.is_empty() {
+    if on_legs.is_empty() || plan.rows.is_empty() {
         return (views, plan);
     }
     // Goods that stand between legs tell where there are none.

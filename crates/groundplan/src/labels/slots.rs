@@ -5,6 +5,7 @@ use super::connected;
 use super::corridors::Strip;
 use super::family;
 use super::gates::crossing;
+use super::meeting::CLUTTER;
 use super::rows::DEPTH;
 use super::sections::WIDTH;
 use super::turned::Turned;
@@ -17,8 +18,8 @@ const MOUTH: f64 = 0.6;
 /// An aisle is so many times as wide as a slot that opens into it at least.
 const NARROWER: f64 = family::LED_TO;
 
-/// The strips without those that lead from an aisle no farther than a rack is deep, narrower than that and not on to another,
-/// nor those that do but are too narrow for ways, where few are alike.
+/// The strips without slots. One leads from an aisle, is narrower than that, and something stands between its end and the next
+/// aisle, no farther off than a rack is deep. Or it leads through to that, is too narrow for a way, and few are alike.
 pub fn without(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
     let is_slot = |n: usize| {
@@ -42,12 +43,19 @@ pub fn without(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
         let before = before.into_iter().max_by(|a, b| a.0[1].total_cmp(&b.0[1]));
         let behind = behind.into_iter().min_by(|a, b| a.0[0].total_cmp(&b.0[0]));
         let (Some((before, one)), Some((behind, two))) = (before, behind) else { return false };
+        // What crosses an aisle leads on from there.
+        if own.along[0] < before[0] - MOUTH || own.along[1] > behind[1] + MOUTH {
+            return false;
+        }
+        let is_closed = |[from, to]: [f64; 2]| {
+            view.mean_blocked(view.column(from)..view.column(to) + 1, own.across[0], own.across[1]) > CLUTTER
+        };
         let opens = [own.along[0] - before[1] <= MOUTH, behind[0] - own.along[1] <= MOUTH];
         let is_narrower = |width: f64| own.width() < NARROWER * width;
         behind[0] - before[1] <= DEEPEST
             && match opens {
-                [true, false] => is_narrower(one),
-                [false, true] => is_narrower(two),
+                [true, false] => is_narrower(one) && is_closed([own.along[1], behind[0]]),
+                [false, true] => is_narrower(two) && is_closed([before[1], own.along[0]]),
                 [true, true] => {
                     own.width() < WIDTH.0
                         && is_narrower(one.min(two))
