@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -57,6 +58,18 @@ def test_slots_in_racks_of_several_pallets_depth_are_no_ways(slot: int) -> None:
     # And one right through a row, as wide as a pallet.
     rows[1][:, 600 : 600 + slot] = 254
     assert ways_across(picture) == pytest.approx(HEADS, abs=0.15)
+
+
+def test_a_passage_through_several_racks_of_that_depth_is_a_way_though_it_is_narrow() -> None:
+    picture, rows = hall(3, 88, 700)
+    for row in rows:
+        row[:, 400:426] = 254
+    assert ways_across(picture) == pytest.approx([26 * RESOLUTION, *HEADS], abs=0.15)
+
+
+def test_a_way_that_is_seen_to_end_a_little_before_a_wide_aisle_leads_into_that(shared: Path) -> None:
+    survey = groundplan.survey(groundplan.read(shared / "maps" / "radish_edmonton_convention.yaml"))
+    assert any(way["name"] == "C05" and way["width"] > 3 for way in survey.of_kind("corridor"))
 
 
 @pytest.mark.parametrize(("width", "ways"), [(66, 1), (84, 2)])
