@@ -3,7 +3,6 @@
 use super::Evidence;
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
-use super::family;
 use super::look::Look;
 use super::passing::{self, Place};
 use super::rows::Row;
@@ -13,12 +12,11 @@ use super::step::{self, Section};
 use super::thin;
 use super::through::{BETWEEN_CELLS, Through};
 use super::turned::Turned;
-use super::widths::{self, Widths};
+use super::widths::Widths;
 use crate::bands::flat_map_each;
 use crate::bits::Bits;
 use crate::ends::{around, holds, overlap, wider};
 use std::cell::LazyCell;
-use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
@@ -43,14 +41,14 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, &placed, widest, row)).collect();
     let seen = seen(evidence, look, views, strips, rows, &reaching);
     for row in &seen {
-        for way in row.columns.ways() {
+        for &way in &row.ways {
             let found = if row.columns.is_as_bays(way) { &mut doubtful } else { &mut gates };
             found.extend(row.gate(way));
         }
     }
     let mut as_bays: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, &seen)).collect();
-    as_bays.extend(in_each_row(&seen));
     let through = Through::new(views, seen);
+    as_bays.extend(through.in_each_row());
     for (gate, is_doubtful) in through.at_walls(strips, &placed) {
         if is_doubtful { &mut doubtful } else { &mut gates }.push(gate);
     }
@@ -102,7 +100,8 @@ fn seen<'a>(
         let middles = between.map(|n| strips[n].middle());
         let widest = between.map(|n| strips[n].width()).into_iter().fold(0.0, f64::max);
         let columns = Columns::new(look, &evidence.grid.frame, [view, other], reaching, view.pitch);
-        Some(Seen { own: row.along, row: reaching, columns, views: [view, other], between, middles, widest })
+        let ways = columns.ways();
+        Some(Seen { own: row.along, row: reaching, columns, ways, views: [view, other], between, middles, widest })
     })
 }
 
@@ -137,33 +136,6 @@ fn between_posts(view: &Turned, seen: &[Seen]) -> Vec<Strip> {
     let are_out = step::are_out(&sections, pitch);
     let out = rows.into_iter().zip(sections).zip(are_out).filter(|(_, is_out)| *is_out);
     out.filter_map(|((row, section), _)| row.gate(section.ends)).collect()
-}
-
-/// The ways through rows between the ends of racks that are as wide as bays, where as many lead through each of the rows one
-/// beside another there: bays are empty anywhere.
-fn in_each_row(seen: &[Seen]) -> Vec<Strip> {
-    let ways: Vec<Vec<[f64; 2]>> = seen.iter().map(|row| row.columns.ways()).collect();
-    let mut along: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for (n, row) in seen.iter().enumerate() {
-        row.between.into_iter().for_each(|aisle| along.entry(aisle).or_default().push(n));
-    }
-    let width = |[from, to]: [f64; 2]| to - from;
-    let is_told = |n: usize, gate: &Strip, way: [f64; 2]| {
-        let alike = |m: usize| ways[m].iter().filter(|other| widths::are_alike(width(**other), width(way))).count();
-        let (mut beside, mut next) = (BTreeSet::from([n]), vec![n]);
-        while let Some(row) = next.pop() {
-            let near = seen[row].between.iter().flat_map(|aisle| &along[aisle]).copied();
-            next.extend(near.filter(|&m| seen[m].holds(gate.middle()) && beside.insert(m)));
-        }
-        width(way) >= family::LED_TO * seen[n].widest
-            && beside.len() > 1
-            && beside.into_iter().all(|m| alike(m) == alike(n))
-    };
-    let told = |n: usize| {
-        let ways = ways[n].iter().filter(move |way| seen[n].columns.is_as_bays(**way));
-        ways.filter_map(move |&way| seen[n].gate(way).filter(|gate| is_told(n, gate, way)))
-    };
-    (0..seen.len()).flat_map(told).collect()
 }
 
 /// True when one strip lies in another of its direction.

@@ -23,6 +23,8 @@ pub struct Seen<'a> {
     /// Where it begins and ends, along.
     pub own: [f64; 2],
     pub columns: Columns<'a>,
+    /// What leads through it between uprights, from where to where along.
+    pub ways: Vec<[f64; 2]>,
     /// Of the direction that it runs along, and of the one that crosses it.
     pub views: [&'a Turned; 2],
     /// The two corridors beside it, and the places across of their middles.

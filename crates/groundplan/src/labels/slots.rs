@@ -15,7 +15,9 @@ use crate::ends::{around, holds, wider};
 const DEEPEST: f64 = 2.0 * DEPTH.1;
 /// What ends so near to an aisle opens into it, metres.
 const MOUTH: f64 = 0.6;
-/// An aisle is so many times as wide as a slot that opens into it at least.
+/// The aisles beside a slot go on past it by so many times its width.
+const PAST: f64 = 2.0;
+/// A slot is narrower than this share of an aisle that it opens into.
 const NARROWER: f64 = family::LED_TO;
 
 /// The strips without slots. One leads from an aisle, is narrower than that, and something stands between its end and the next
@@ -32,7 +34,7 @@ pub fn without(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
             let [s, u] = view.crossing(other, own.middle(), aisle.middle());
             let reach = aisle.width() / 2.0 / libm::sin(other.angle - view.angle).abs();
             // At a rack's end it leads past that.
-            let goes_on = holds(wider(aisle.along, -2.0 * own.width()), s);
+            let goes_on = holds(wider(aisle.along, -PAST * own.width()), s);
             (goes_on && aisle.length() > own.length()).then_some(([u - reach, u + reach], aisle.width()))
         };
         let near = placed[other.direction].touching(along, across).into_iter();

@@ -11,7 +11,7 @@ use super::sections::WIDTH;
 use super::seen::Seen;
 use super::turned::Turned;
 use super::whole;
-use super::widths::Widths;
+use super::widths::{Widths, are_alike};
 use crate::ends::{overlap, shared};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -166,6 +166,26 @@ impl<'a> Through<'a> {
         gates.collect()
     }
 
+    /// The ways through rows between the ends of racks that are as wide as bays, where as many lead through each of the rows one
+    /// beside another there: bays are empty anywhere.
+    pub fn in_each_row(&self) -> Vec<Strip> {
+        let width = |[from, to]: [f64; 2]| to - from;
+        let alike = |m: usize, way: [f64; 2]| {
+            self.rows[m].ways.iter().filter(|other| are_alike(width(**other), width(way))).count()
+        };
+        let is_told = |n: usize, gate: &Strip, way: [f64; 2]| {
+            let beside = self.beside(n, gate.middle());
+            width(way) >= family::LED_TO * self.rows[n].widest
+                && beside.len() > 1
+                && beside.into_iter().all(|m| alike(m, way) == alike(n, way))
+        };
+        let gates = self.rows.iter().enumerate().flat_map(|(n, seen)| {
+            let ways = seen.ways.iter().filter(|way| seen.columns.is_as_bays(**way));
+            ways.filter_map(move |&way| seen.gate(way).filter(|gate| is_told(n, gate, way)))
+        });
+        gates.collect()
+    }
+
     /// A row and those beside it, one beside another, that reach up to a place across the direction that crosses them.
     fn beside(&self, row: usize, place: f64) -> BTreeSet<usize> {
         let (mut found, mut next) = (BTreeSet::from([row]), vec![row]);
@@ -227,7 +247,7 @@ impl<'a> Through<'a> {
         common.rows.iter().all(|&n| {
             let ends = self.rows[n].stretch(common.ends);
             let is_there = |way: &[f64; 2]| [0, 1].into_iter().all(|side| (way[side] - ends[side]).abs() <= SLACK);
-            self.rows[n].columns.ways().iter().any(is_there)
+            self.rows[n].ways.iter().any(is_there)
         })
     }
 
