@@ -98,6 +98,24 @@ def test_narrow_rows_on_a_coarse_map_are_measured_where_staircases_look_like_oth
     assert (apart([angle, angle + np.pi / 2], found).min(axis=1) < np.radians(0.1)).all(), np.degrees(found)
 
 
+@pytest.mark.parametrize("wall", [0.3, 0.32, 0.36, 0.4])
+@pytest.mark.parametrize("degrees", [35.0, 37.2, 40.2, 41.6, 48.6, 53.0, 55.0])
+def test_cross_walls_of_a_hall_turned_by_much_are_square_to_its_racks(degrees: float, wall: float) -> None:
+    """Seven racks of 19 m by 1.8 m, 2.1 m apart, in walls of three or four pixels of 0.1 m, drawn without noise."""
+    angle = np.radians(degrees)
+    length, depth, half = 25.36, 29.42, 23.4
+    y, x = np.mgrid[-half:half:0.1, -half:half:0.1]
+    along = x * np.cos(angle) + y * np.sin(angle) + length / 2
+    across = y * np.cos(angle) - x * np.sin(angle) + depth / 2
+    inside = (along > 0) & (along < length) & (across > 0) & (across < depth)
+    racks = inside & (along > 3.16) & (along < length - 3.16) & (across % 3.9 > 2.12)
+    walls = (along > -wall) & (along < length + wall) & (across > -wall) & (across < depth + wall) & ~inside
+    picture = np.where(racks | walls, 0, np.where(inside, 254, 205)).astype(np.uint8)
+    found = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=0.1).directions.angles
+    assert len(found) == 2
+    assert (apart([angle, angle + np.pi / 2], found).min(axis=1) < np.radians(0.1)).all(), np.degrees(found)
+
+
 @pytest.mark.parametrize("turn", [16.0, 35.0, 50.0])
 def test_each_wing_has_the_direction_of_its_ends_be_that_little_beside_its_long_rows(turn: float) -> None:
     """A hall of 40 m by 16.5 m with four rows of racks, and a wing of 25 m by 12 m with three."""
