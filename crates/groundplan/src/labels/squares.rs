@@ -153,11 +153,18 @@ impl<'a> SquaredRows<'a> {
     }
 }
 
-/// The sums of some rows of bands of a view so many cells wide, of what is asked; they take the room of others.
-pub fn sums(bands: &[Arc<Band>], width: usize, what: &[What], rows: Range<usize>, room: Summed) -> Summed {
+/// The sums of some rows of bands of a view so many cells wide, with so many samples to a cell, of what is asked; they take
+/// the room of others.
+pub fn sums(
+    bands: &[Arc<Band>],
+    [width, samples]: [usize; 2],
+    what: &[What],
+    rows: Range<usize>,
+    room: Summed,
+) -> Summed {
     let across = width.div_ceil(SIDE);
     let width = across * SIDE;
-    Summed::of_rows(width, rows.clone(), what, room, |what, sums| {
+    Summed::of_rows(width, samples as u16, rows.clone(), what, room, |what, sums| {
         sums[..width].fill(0);
         for n in rows.start / SIDE..rows.end.div_ceil(SIDE) {
             let band = &bands[n / BAND];
@@ -167,7 +174,7 @@ pub fn sums(bands: &[Arc<Band>], width: usize, what: &[What], rows: Range<usize>
             let mut after: Vec<_> = after.chunks_mut(width).take(own.len()).collect();
             let places = &band.places[n % BAND * across..][..across];
             for (&place, (last, from)) in places.iter().zip(last.zip((0..).step_by(SIDE))) {
-                let mut sum = [0u16; SIDE];
+                let mut sum = [0u8; SIDE];
                 sum.copy_from_slice(last);
                 let rows = if place & ALIKE != 0 {
                     // Most of a map is free, and nothing stands in it.
@@ -183,7 +190,7 @@ pub fn sums(bands: &[Arc<Band>], width: usize, what: &[What], rows: Range<usize>
                     band.squares[place as usize].rows(what)
                 };
                 for (row, to) in rows[own.clone()].iter().zip(&mut after) {
-                    sum.iter_mut().zip(row.to_le_bytes()).for_each(|(sum, byte)| *sum += u16::from(byte));
+                    sum.iter_mut().zip(row.to_le_bytes()).for_each(|(sum, byte)| *sum = sum.wrapping_add(byte));
                     to[from..from + SIDE].copy_from_slice(&sum);
                 }
             }

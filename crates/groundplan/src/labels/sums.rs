@@ -39,6 +39,7 @@ pub enum Cells {
     /// Bands of rows of squares, and the sums of some rows.
     Squared {
         width: usize,
+        samples: u16,
         bands: Arc<Vec<Arc<Band>>>,
         near: Summed,
     },
@@ -63,7 +64,7 @@ impl Told {
 
 impl Default for Cells {
     fn default() -> Self {
-        Self::Squared { width: 0, bands: Arc::default(), near: Summed::default() }
+        Self::Squared { width: 0, samples: 0, bands: Arc::default(), near: Summed::default() }
     }
 }
 
@@ -104,7 +105,7 @@ impl Cells {
                 )
             });
             let (bands, told): (_, Vec<_>) = made.into_iter().unzip();
-            return (Self::Squared { width, bands: Arc::new(bands), near: Summed::default() }, told.concat());
+            return (Self::Squared { width, samples, bands: Arc::new(bands), near: Summed::default() }, told.concat());
         }
         // Where keys are asked for, they are of whole rows.
         let seen = if keyed || seen.columns.is_empty() { Part { columns: 0..width, rows: 0..height } } else { seen };
@@ -137,9 +138,9 @@ impl Cells {
 
     /// Squares with the sums of some rows, of what will be asked of them; they take the room of others.
     pub fn near(&self, what: &[What], rows: Range<usize>, room: Summed) -> Option<Self> {
-        let Self::Squared { width, bands, .. } = self else { return None };
-        let near = squares::sums(bands, *width, what, rows, room);
-        Some(Self::Squared { width: *width, bands: Arc::clone(bands), near })
+        let &Self::Squared { width, samples, ref bands, .. } = self else { return None };
+        let near = squares::sums(bands, [width, samples.into()], what, rows, room);
+        Some(Self::Squared { width, samples, bands: Arc::clone(bands), near })
     }
 
     /// The sums of some rows that there are beside squares.
