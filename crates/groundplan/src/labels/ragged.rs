@@ -12,10 +12,14 @@ use super::sweep::Sweep;
 use super::turned::Turned;
 use super::{Evidence, pieces};
 use crate::ends::overlap;
+use std::cell::OnceCell;
+use std::ops::Range;
 
 /// Widths are tried in such steps, and places across in such shares of the width.
 const WIDER: f64 = 1.25;
 const STEP: f64 = 0.125;
+/// So many places are asked together before each of them is.
+const GROUP: usize = 2;
 /// So many columns of them are worth a thread's while.
 const TOGETHER: usize = 1 << 17;
 /// The narrowest with deep sides, metres: what is narrower has its sides nearer than goods are apart.
@@ -49,13 +53,15 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     let parameters = evidence.parameters;
     let bay = corridors::pitches(views, view).into_iter().fold(0.0, |widest, pitch| f64::max(widest, BAY * pitch));
     let seen = Seen::new(view);
-    let (mut tried, mut lows) = (Vec::new(), Vec::new());
+    // Strips, what may hold their sides, and those of them that are asked together first.
+    let (mut tried, mut by, mut groups) = (Vec::new(), Vec::new(), Vec::<Range<usize>>::new());
     let mut widest: f64 = 0.0;
     let mut width = parameters.labels_min_width;
     while width <= WIDEST * parameters.labels_max_width {
         let step = (STEP * width).max(view.cell);
         let extent = view.size[1] as f64 * view.cell;
         let both = if width >= NARROWEST { &[Held::Deep, Held::Thin][..] } else { &[Held::Thin] };
+        let mut next = usize::MAX;
         for n in 0..((extent - width) / step).max(0.0) as usize {
             let low = view.start[1] + n as f64 * step;
             let across = [low, low + width];
@@ -64,25 +70,39 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
                 continue;
             }
             let is_faced = !any(&|side| seen.on_lines(side) < fewest_faced(view));
-            let by: &[Held] = if is_faced { both } else { &both[..both.len() - 1] };
-            if by.is_empty() {
+            let own: &[Held] = if is_faced { both } else { &both[..both.len() - 1] };
+            if own.is_empty() {
                 continue;
             }
-            tried.push((across, by));
-            lows.push(low);
+            match groups.last_mut() {
+                Some(group) if n == next && group.len() < GROUP && own == by[group.start] => group.end += 1,
+                _ => groups.push(tried.len()..tried.len() + 1),
+            }
+            tried.push(across);
+            by.push(own);
+            next = n + 1;
             widest = widest.max(width);
         }
         width *= WIDER;
     }
     let depth_of_all = depth([0.0, widest]);
-    let around = [depth_of_all, widest + depth_of_all];
+    let group = (GROUP - 1) as f64 * (STEP * widest).max(view.cell);
+    let around = [depth_of_all, group + widest + depth_of_all];
+    let lows: Vec<f64> = groups.iter().map(|group| tried[group.start][0]).collect();
     let sweep = Sweep { view, places: &lows, around, what: &[What::Blocked, What::Occupied] };
     let mut candidates = sweep.find(TOGETHER, threads, |near, n, found| {
-        let (across, by) = tried[n];
-        let told = [may_be_bay(across, bay), by.contains(&Held::Deep)].map(u64::from);
-        let key = || told.into_iter().fold(view.key(across, depth(across)), Key::with);
-        let ways = evidence.recall.ragged.or_find(key, || Candidate::new(near.view(), across, bay).ways(by));
-        found.extend(ways.iter().map(|way| Short::new(view, n, way)));
+        let group = groups[n].clone();
+        let one_may = OnceCell::new();
+        for n in group.clone() {
+            let (across, by) = (tried[n], by[n]);
+            let told = [may_be_bay(across, bay), by.contains(&Held::Deep)].map(u64::from);
+            let key = || told.into_iter().fold(view.key(across, depth(across)), Key::with);
+            let may_be = || Candidate::may_be(near.view(), &tried[group.clone()], by);
+            let may_be = || group.len() == 1 || *one_may.get_or_init(may_be);
+            let ways = || if may_be() { Candidate::new(near.view(), across, bay).ways(by) } else { Vec::new() };
+            let ways = evidence.recall.ragged.or_find(key, ways);
+            found.extend(ways.iter().map(|way| Short::new(view, n, way)));
+        }
     });
     candidates.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.tried.cmp(&b.tried)));
     let mut all = known.to_vec();
@@ -90,7 +110,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     let mut placed = Beside::of(view);
     let mut next = 0;
     for short in candidates {
-        let (candidate, by) = (short.strip(view, tried[short.tried as usize].0), short.by);
+        let (candidate, by) = (short.strip(view, tried[short.tried as usize]), short.by);
         if short.is_cut {
             cut.add(&candidate);
             continue;

@@ -12,14 +12,20 @@ pub const BARRED: f64 = 0.7;
 /// Of how many samples of each column something is true.
 pub struct Shares<'a> {
     rows: Rows<'a>,
-    /// Samples of a column.
+    /// Samples of a column, and of a cell.
     count: u32,
+    each: u32,
 }
 
 impl Shares<'_> {
     /// True when there is a sample in each column.
     pub fn has_samples(&self) -> bool {
         self.count > 0
+    }
+
+    /// Shares of so many cells, however many a column has here.
+    pub fn of_cells(self, cells: u32) -> Self {
+        Self { count: cells * self.each, ..self }
     }
 
     /// Of so many samples of a column.
@@ -184,9 +190,16 @@ impl Turned {
         self.shares_in(What::Barred, low, high)
     }
 
+    /// Cells of a column between two places across.
+    pub fn cells_in(&self, low: f64, high: f64) -> u32 {
+        let (from, to) = self.cells(low, high);
+        (to - from) as u32
+    }
+
     fn shares_in(&self, what: What, low: f64, high: f64) -> Shares<'_> {
         let (from, to) = self.cells(low, high);
-        Shares { rows: self.cells.rows(what, from, to), count: (to - from) as u32 * self.counts(what) }
+        let each = self.counts(what);
+        Shares { rows: self.cells.rows(what, from, to), count: (to - from) as u32 * each, each }
     }
 
     fn shares(&self, what: What, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {

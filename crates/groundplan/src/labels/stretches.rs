@@ -73,6 +73,9 @@ pub type Found = (Strip, Held, bool);
 pub struct Candidate<'a> {
     view: &'a Turned,
     across: [f64; 2],
+    /// Where its sides may stand, and the least cells that a column has there.
+    beyond: [[f64; 2]; 2],
+    deep: [u32; 2],
     /// It may be a row of empty bays.
     bay: bool,
     blocked: Shares<'a>,
@@ -107,18 +110,49 @@ impl<'a> Candidate<'a> {
     pub fn new(view: &'a Turned, across: [f64; 2], bay: f64) -> Self {
         let blocked = view.blocked_in(across[0], across[1]);
         let closed = blocked.least(|share| share > IMPASSABLE);
-        Self { view, across, bay: may_be_bay(across, bay), closed, blocked }
+        let beyond = beyond(across);
+        let deep = beyond.map(|[low, high]| view.cells_in(low, high));
+        Self { view, across, beyond, deep, bay: may_be_bay(across, bay), closed, blocked }
     }
 
-    /// What the columns of a stretch are, where so many of them may be a way.
-    fn columns(&self, stretch: &Stretch, by: Held, least: usize) -> Option<Columns> {
+    /// Several of one width, the lowest first: what they have in common, between sides that may stand wherever one's may.
+    /// Of its columns at least as much speaks for a way as of any one's.
+    fn common(view: &'a Turned, all: &[[f64; 2]]) -> Option<Self> {
+        let (first, last) = (*all.first()?, *all.last()?);
+        let most = all.iter().map(|own| view.cells_in(own[0], own[1])).max()?;
+        let blocked = view.blocked_in(last[0], first[1]).of_cells(most);
+        let closed = blocked.least(|share| share > IMPASSABLE);
+        let sides = [beyond(first), beyond(last)];
+        let least =
+            |side: usize| all.iter().map(|own| beyond(*own)[side]).map(|[low, high]| view.cells_in(low, high)).min();
+        let deep = [least(0)?, least(1)?];
+        let beyond = [[sides[0][0][0], sides[1][0][1]], [sides[0][1][0], sides[1][1][1]]];
+        let width = all.iter().map(|own| own[1] - own[0]).fold(f64::INFINITY, f64::min);
+        Some(Self { view, across: [0.0, width], beyond, deep, bay: false, closed, blocked })
+    }
+
+    /// False when none of several strips of one width, the lowest first, is a way.
+    pub fn may_be(view: &'a Turned, all: &[[f64; 2]], by: &[Held]) -> bool {
+        let Some(common) = Self::common(view, all) else { return false };
+        let least = by.iter().map(|&by| common.least(by)).min().unwrap_or(1);
+        let stretches = common.stretches(0..view.size[0], least, &[]);
+        let holds = |by: Held| {
+            let least = common.least(by);
+            let mut long = stretches.iter().filter(|stretch| stretch.columns.len() >= least);
+            long.any(|stretch| common.sides(stretch, by, least).is_some())
+        };
+        by.iter().any(|&by| holds(by))
+    }
+
+    /// In which columns of a stretch each side holds, and both do, where so many of them may be a way.
+    fn sides(&self, stretch: &Stretch, by: Held, least: usize) -> Option<([Bits; 2], Bits)> {
         let all = stretch.all();
         let enough = |count: usize, share: f64| count as f64 >= share * least as f64;
         if !enough(all.len() - stretch.unclear.count(all.clone()), by.least_clear()) {
             return None;
         }
         // Sides that are thin need lines along them, of which mostly there are none: these are counted soonest.
-        if by == Held::Thin && beyond(self.across).iter().any(|side| !self.may_face(stretch, *side, least)) {
+        if by == Held::Thin && self.beyond.iter().any(|side| !self.may_face(stretch, *side, least)) {
             return None;
         }
         let low = self.held(stretch, by, 0);
@@ -127,9 +161,12 @@ impl<'a> Candidate<'a> {
         }
         let held = [low, self.held(stretch, by, 1)];
         let both = &held[0] & &held[1];
-        if !enough(both.count(all.clone()), LEAST_BOTH) {
-            return None;
-        }
+        enough(both.count(all), LEAST_BOTH).then_some((held, both))
+    }
+
+    /// What the columns of a stretch are, where so many of them may be a way.
+    fn columns(&self, stretch: &Stretch, by: Held, least: usize) -> Option<Columns> {
+        let (held, both) = self.sides(stretch, by, least)?;
         let cluttered = self.blocked.least(|share| share > CLUTTERED);
         let cluttered = self.blocked.reached(stretch.columns.clone(), cluttered);
         let score = |n: usize| match (!stretch.unclear.get(n), [held[0].get(n), held[1].get(n)]) {
@@ -140,7 +177,7 @@ impl<'a> Candidate<'a> {
             (_, [false, false]) => -OPEN,
             _ => ONE_SIDED,
         };
-        let scores = all.map(score).collect();
+        let scores = stretch.all().map(score).collect();
         Some(Columns { held, both, scores })
     }
 
@@ -153,9 +190,12 @@ impl<'a> Candidate<'a> {
 
     /// In which columns of a stretch a side holds.
     fn held(&self, stretch: &Stretch, by: Held, side: usize) -> Bits {
-        let [low, high] = beyond(self.across)[side];
+        let [low, high] = self.beyond[side];
         let columns = || stretch.columns.clone();
-        let deep = || self.view.blocked_where(columns(), low, high, |share| share >= HELD);
+        let deep = || {
+            let of = self.view.blocked_in(low, high).of_cells(self.deep[side]);
+            of.reached(columns(), of.least(|share| share >= HELD))
+        };
         let mut held = stretch.deep[side].get_or_init(deep).clone();
         if by == Held::Thin {
             held |= &self.view.occupied_in(low, high).reached(columns(), 1);
