@@ -107,8 +107,9 @@ impl Summed {
         if inside.len() * usize::from(most) > usize::from(u8::MAX) {
             let few = usize::from(u8::MAX) / usize::from(most);
             let part = |from: usize| Difference { below: row(from), above: row(inside.end.min(from + few)) };
-            first = part(inside.start);
-            more.extend(inside.clone().step_by(few).skip(1).map(part));
+            let mut parts = inside.clone().step_by(few).map(part);
+            first = parts.next().unwrap_or(first);
+            more.extend(parts);
         }
         SummedRows {
             first,

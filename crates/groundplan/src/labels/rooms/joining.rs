@@ -116,19 +116,18 @@ impl<'a> Joining<'a> {
     /// Joins across the most open stretch, again and again, while there is one that parts nothing. A set that grows
     /// only makes its openings less open, so that each is measured anew only when its turn comes.
     fn join_open(&mut self, threads: usize) {
-        let all = flat_map_each(self.stretches.len(), threads, |n| [self.measure(n)]);
+        let least = self.rules.openness;
+        let all = flat_map_each(self.stretches.len(), threads, |n| [self.measure(n, least)]);
         let mut queue = BinaryHeap::from(all);
-        while let Some(most) = queue.pop() {
+        while let Some(most) = queue.pop().filter(|most| most.value >= least) {
             let sides = self.sides(most.stretch);
             if sides[0] == sides[1] {
                 continue;
             }
             if sides.map(|side| self.age[side as usize]) != most.ages {
-                queue.push(self.measure(most.stretch));
-            } else if most.value >= self.rules.openness {
-                self.join(sides);
+                queue.push(self.measure(most.stretch, least));
             } else {
-                break;
+                self.join(sides);
             }
         }
     }
@@ -148,7 +147,7 @@ impl<'a> Joining<'a> {
         let openings: Vec<Bar> = parting.iter().map(opening).collect();
         for (n, is_beyond) in parting.into_iter().zip(leaves::beyond(&openings, self.raster)) {
             let sides = self.sides(n);
-            if is_beyond && sides[0] != sides[1] && self.measure(n).value >= BESIDE_LEAF {
+            if is_beyond && sides[0] != sides[1] && self.measure(n, BESIDE_LEAF).value >= BESIDE_LEAF {
                 self.join(sides);
             }
         }
@@ -175,7 +174,7 @@ impl<'a> Joining<'a> {
         for n in 0..self.stretches.len() {
             let sides = self.sides(n);
             if sides[0] != sides[1] && sides.iter().any(|&side| unwalled[side as usize]) {
-                queue.push(self.measure(n));
+                queue.push(self.measure(n, 0.0));
             }
         }
         while let Some(most) = queue.pop() {
@@ -184,7 +183,7 @@ impl<'a> Joining<'a> {
                 continue;
             }
             if sides.map(|side| self.age[side as usize]) != most.ages {
-                queue.push(self.measure(most.stretch));
+                queue.push(self.measure(most.stretch, 0.0));
                 continue;
             }
             let [mut few, mut many] = sides.map(|side| std::mem::take(&mut own[side as usize]));
@@ -209,7 +208,7 @@ impl<'a> Joining<'a> {
             if grown && before != [true; 2] {
                 many.retain(|&n| self.sides(n as usize)[0] != self.sides(n as usize)[1]);
                 for &n in &many {
-                    queue.push(self.measure(n as usize));
+                    queue.push(self.measure(n as usize, 0.0));
                 }
             }
             unwalled[to] = grown;
@@ -217,23 +216,26 @@ impl<'a> Joining<'a> {
         }
     }
 
-    /// The width of a stretch over the width of the space on its tighter side.
-    fn measure(&self, stretch: usize) -> Openness {
+    /// The width of a stretch over the width of the space on its tighter side; what is less than `least` only so far that
+    /// this is known.
+    fn measure(&self, stretch: usize, least: f64) -> Openness {
         let sides = self.stretches[stretch].pieces.map(|piece| self.sets.name(piece));
         let ages = sides.map(|side| self.age[side as usize]);
         let Stretch { bar, pixels, .. } = &self.stretches[stretch];
         // A stretch of a slanted bar has fewer pixels than it is long.
         let width = self.bars[*bar].length().min(std::f64::consts::SQRT_2 * pixels.len() as f64);
-        // The smaller one first: of the other it is enough to know that it is as wide.
-        let both = [(sides[0], 1.0), (sides[1], -1.0)];
-        let first = usize::from(self.area[sides[1] as usize] < self.area[sides[0] as usize]);
-        let one = self.beyond(stretch, both[first], f64::INFINITY);
-        let beyond = one.min(self.beyond(stretch, both[1 - first], one));
-        let share = if beyond > 0.0 { (width / beyond).min(1.0) } else { 1.0 };
         let tie = PER_METRE * width * self.raster.resolution;
         let area = sides.map(|side| self.area[side as usize]).into_iter().min().unwrap_or(0) as f64;
         // What is too small for a region goes first of all.
         let small = area * self.raster.resolution.powi(2) <= self.rules.least_area;
+        // A pixel more than it takes, for what floats round.
+        let enough = if small || least <= tie { f64::INFINITY } else { width / (least - tie) + 1.0 };
+        // The smaller one first: of the other it is enough to know that it is as wide.
+        let both = [(sides[0], 1.0), (sides[1], -1.0)];
+        let first = usize::from(self.area[sides[1] as usize] < self.area[sides[0] as usize]);
+        let one = self.beyond(stretch, both[first], enough);
+        let beyond = one.min(self.beyond(stretch, both[1 - first], one));
+        let share = if beyond > 0.0 { (width / beyond).min(1.0) } else { 1.0 };
         Openness { value: share + tie + if small { 10.0 } else { 0.0 }, stretch, ages }
     }
 
