@@ -276,15 +276,20 @@ impl<'a> Candidate<'a> {
         let on_map = first + range.start..first + range.end;
         let mut walls = barriers::across(view, self.across, on_map.clone());
         walls |= &barriers::doors(view, beyond(self.across), on_map.clone());
+        let near = ((self.across[1] - self.across[0]) / view.cell) as usize;
+        let inner = near..range.len().saturating_sub(near);
+        let ends = |walls: &Bits| inner.is_empty() && walls.any() || walls.count(inner.clone()) > 0;
+        // What ends it already need not be asked where else it stops.
+        if ends(&walls) {
+            return None;
+        }
         for stop in barriers::stops(view, self.across, on_map) {
             walls.insert(stop - first - range.start);
         }
         if !walls.any() {
             return Some(range);
         }
-        let near = ((self.across[1] - self.across[0]) / view.cell) as usize;
-        let inner = near..range.len().saturating_sub(near);
-        if inner.is_empty() || walls.count(inner.clone()) > 0 {
+        if ends(&walls) {
             return None;
         }
         let from = walls.runs(0..inner.start, true).last().map_or(0, |run| run.end);
