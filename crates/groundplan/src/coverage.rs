@@ -168,6 +168,9 @@ impl<'a> Coverage<'a> {
                     last = first + 1;
                 }
                 let count = count_below(&bits, &sums, last - start) - count_below(&bits, &sums, first - start);
+                if count == 0 {
+                    continue;
+                }
                 shares[edge as usize] = tidy(f64::from(count) / (last - first) as f64);
                 let metres = |bin: usize| {
                     let place = if bin == first {

@@ -193,10 +193,11 @@ impl Evidence<'_> {
     }
 
     fn runs(&self, edge: usize) -> impl Iterator<Item = Run> {
-        let ends = self.ends(edge);
-        let (length, kind) = (distance(ends[0], ends[1]), self.kinds[edge]);
+        let (ends, kind, runs) = (self.ends(edge), self.kinds[edge], self.occupancy.runs_of(edge));
+        // Mostly nothing lies on it.
+        let length = if runs.is_empty() { 0.0 } else { distance(ends[0], ends[1]) };
         let run = move |run: &[f64; 2]| Run { points: run.map(|at| point(ends, at, length)), kind, vertex: ends[0] };
-        self.occupancy.runs_of(edge).iter().map(run)
+        runs.iter().map(run)
     }
 
     /// The runs of a line without scraps: what a gap too narrow to be an opening parts from the rest counts when it is
