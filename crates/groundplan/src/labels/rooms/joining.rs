@@ -124,10 +124,10 @@ impl<'a> Joining<'a> {
             if sides[0] == sides[1] {
                 continue;
             }
-            if sides.map(|side| self.age[side as usize]) != most.ages {
-                queue.push(self.measure(most.stretch, least));
-            } else {
+            if sides.map(|side| self.age[side as usize]) == most.ages {
                 self.join(sides);
+            } else {
+                queue.push(self.measure(most.stretch, least));
             }
         }
     }
