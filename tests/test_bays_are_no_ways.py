@@ -104,3 +104,38 @@ def test_a_gap_as_wide_as_a_bay_is_a_way_where_each_of_the_rows_has_one_between_
         for end in (0, count) if gap is None else (0, gap, gap + 1, count):
             row[:, end * bay : end * bay + 2] = 0
     assert len(ways_across(picture)) == 2 + (len(gaps) if len(gaps) == len(rows) else 0)
+
+
+def half_empty(width: int, share: float, seed: int) -> Picture:
+    """Three rows of sixteen bays of 2.8 m between posts, some empty, and a way through all of them."""
+    draws = np.random.default_rng(seed)
+    bay, count = 56, 16
+    picture, rows = hall(3, 20, count * bay + width)
+    full = draws.random((len(rows), count)) > share
+    # No bay is empty in each row.
+    full[draws.integers(0, len(rows), count), np.arange(count)] = True
+    for row, own in zip(rows, full.tolist(), strict=True):
+        row[:] = 254
+        for n, has_goods in enumerate(own):
+            start = n * bay + (width if n >= count // 2 else 0)
+            for post in (start, start + bay - 2):
+                row[[0, 1, -2, -1], post : post + 2] = 0
+            if has_goods:
+                row[1:-1, start + 3 : start + 26] = 0
+                row[1:-1, start + 30 : start + bay - 3] = 0
+    return picture
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("width", [57, 59])
+def test_where_a_way_leads_through_all_rows_what_is_as_wide_in_some_is_a_bay_if_more_of_them_is_empty(
+    width: int, seed: int
+) -> None:
+    across = ways_across(half_empty(width, 0.15, seed))
+    assert across == pytest.approx(sorted([*HEADS, width * RESOLUTION]), abs=0.25)
+
+
+@pytest.mark.parametrize("seed", [4, 6])
+def test_where_a_wider_way_leads_through_all_rows_an_empty_bay_in_each_of_them_is_none(seed: int) -> None:
+    across = ways_across(half_empty(64, 0.2, seed))
+    assert across == pytest.approx(sorted([*HEADS, 64 * RESOLUTION]), abs=0.35)

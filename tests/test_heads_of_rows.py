@@ -69,3 +69,23 @@ def test_the_way_along_the_wall_is_known_though_not_all_aisles_beside_the_rows_e
     survey = groundplan.survey(simulate.warehouse(options, seed=2).map)
     at_wall = [way for way in survey.of_kind("corridor") if all(abs(x) < 0.3 for x, _ in way["axis"])]
     assert [(way["name"][0], round(way["width"])) for way in at_wall] == [("C", 3)]
+
+
+@pytest.mark.parametrize("gap", [3.4, 4.6])
+def test_ways_lead_past_both_ends_of_a_single_row_though_they_are_as_wide_as_its_bays(gap: float) -> None:
+    """A row of eight bays of 2.8 m between posts, two of them empty, 4 m from one wall."""
+    length, depth = 26.4 + gap, 7.5
+    y, x = np.mgrid[-1.0 : depth + 1.0 : 0.05, -1.0 : length + 1.0 : 0.05] + 0.025
+    picture = np.full(x.shape, 205, dtype=np.uint8)
+    picture[(x > -0.2) & (x < length + 0.2) & (y > -0.2) & (y < depth + 0.2)] = 0
+    picture[(x > 0) & (x < length) & (y > 0) & (y < depth)] = 254
+    for start in 4.0 + 2.8 * np.arange(9):
+        picture[(abs(x - start) < 0.05) & (y > 3.2) & (y < 4.3) & ((y < 3.3) | (y > 4.2))] = 0
+    for bay in (0, 1, 3, 4, 6, 7):
+        for low, high in ((0.28, 1.34), (1.46, 2.58)):
+            start = 4.0 + 2.8 * bay
+            picture[(x > start + low) & (x < start + high) & (y > 3.25) & (y < 4.25)] = 0
+    survey = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=0.05)
+    ways = sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C"))
+    assert ways == pytest.approx(sorted([gap, 4.0]), abs=0.3)
+    assert [label["type"] for label in survey.of_kind("junction")] == ["L"] * 4

@@ -48,24 +48,32 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     }
     let mut as_bays: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, &seen)).collect();
     let through = Through::new(views, seen);
-    as_bays.extend(through.in_each_row());
-    for (gate, is_doubtful) in through.at_walls(strips, &placed) {
-        if is_doubtful { &mut doubtful } else { &mut gates }.push(gate);
-    }
+    let in_each_row = through.in_each_row();
+    let (as_a_bay, at_walls): (Vec<_>, Vec<_>) = through.at_walls(strips, &placed).into_iter().partition(|(_, is)| *is);
+    gates.extend(at_walls.into_iter().map(|(gate, _)| gate));
     let between_racks = through.between_racks();
-    let is_known = |strip: &&Strip| !strip.bays;
-    let known: Vec<Strip> = in_line(gates.clone()).into_iter().chain(strips.iter().filter(is_known).cloned()).collect();
+    let mut known = in_line(gates.clone());
+    let first = known.len();
+    known.extend(strips.iter().filter(|strip| !strip.bays).cloned());
     let places = LazyCell::new(|| Place::of_each(views, &known));
     let staggered = LazyCell::new(|| Widths::of_staggered(views, &known, &places));
-    let mut sure = Widths::of(views, strips.iter().filter(is_known).chain(&gates));
+    // What passes the ends is as wide as the hall leaves: if that is a bay's width it tells no others.
+    let is_racked = views.iter().any(|view| view.pitch.is_some());
+    let tells = |n: &usize| !is_racked || !passing::is_past_ends_as_bays(&known, &places, *n);
+    let telling = (first..known.len()).filter(tells).map(|n| &known[n]);
+    let mut sure = Widths::of(views, telling.chain(&gates));
     let within = LazyCell::new(|| passing::are_within(views, &places));
+    let are_known: Vec<bool> =
+        views.iter().map(|view| known.iter().any(|way| way.direction == view.direction)).collect();
     let through = through.find(strips, &mut sure, |direction| within[direction]);
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
     let open = LazyCell::new(|| passing::open_through(views, &known, &doubtful));
     let is_told = |n: usize, gate: &Strip| {
         let widths = &sure[gate.direction];
         let pitch = crossing(views, gate.direction).and_then(|view| view.pitch);
-        widths.is_empty() || widths.have(gate.width() + BETWEEN_CELLS, pitch) || (!within[gate.direction] && open[n])
+        !are_known[gate.direction]
+            || widths.have(gate.width() + BETWEEN_CELLS, pitch)
+            || (!within[gate.direction] && open[n])
     };
     gates.extend(doubtful.iter().enumerate().filter(|(n, gate)| is_told(*n, gate)).map(|(_, gate)| gate.clone()));
     // Where no row beside tells a bay from a way, a way is as wide as others of the place; and where ways are staggered from
@@ -78,10 +86,27 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     gates.extend(as_wide.map(|(gate, ..)| gate));
     gates.retain(|gate| !through.iter().any(|way| is_in(gate, way)));
     gates.extend(through);
-    gates.extend(thin::gates(views, strips));
+    gates.extend(as_a_bay.into_iter().map(|(gate, _)| gate).chain(thin::gates(views, strips)));
     let ways = in_line(gates);
+    as_bays.extend(as_wide_as_others(views, strips, &ways, in_each_row));
     as_bays.retain(|gate| !ways.iter().any(|way| is_in(gate, way)));
     Gates { ways, as_bays: in_line(as_bays) }
+}
+
+/// Those of some ways that are as wide as what leads through all rows of their place between their ends, where anything does.
+fn as_wide_as_others(views: &[Turned], strips: &[Strip], ways: &[Strip], some: Vec<Strip>) -> Vec<Strip> {
+    if some.is_empty() {
+        return some;
+    }
+    let known = strips.iter().filter(|strip| !strip.bays).chain(ways);
+    let all: Vec<Strip> = some.iter().chain(known).cloned().collect();
+    let places = Place::of_each(views, &all);
+    let is_as_wide = |&n: &usize| {
+        let whole = |place: &Place| Widths::of_whole(place, &all, &place.passing[n]);
+        let is_so = |widths: Widths| widths.is_empty() || widths.have(all[n].width() + BETWEEN_CELLS, None);
+        places.iter().all(|place| is_so(whole(place)))
+    };
+    (0..some.len()).filter(is_as_wide).map(|n| all[n].clone()).collect()
 }
 
 /// The rows with what is asked of them.

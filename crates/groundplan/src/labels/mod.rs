@@ -15,6 +15,7 @@ mod connected;
 mod cornered;
 mod corridors;
 mod crossed;
+mod empties;
 mod faced;
 mod family;
 mod frames;

@@ -133,7 +133,7 @@ impl<'a> Columns<'a> {
     }
 
     /// The way between one of its ends, at which there is a wall, and what of the row stands nearest to that, if a rack
-    /// ends there or posts show that it is no bay; and whether that is doubtful, as wide as bays or beside one of two racks
+    /// ends there or posts show that it is no bay; and whether that may be one: as wide as bays or beside one of two racks
     /// back to back. At both its ends half a column may be free.
     pub fn way_at_end(&self, side: usize) -> Option<([f64; 2], bool)> {
         let count = self.blocked.len();

@@ -97,6 +97,11 @@ fn open_halves(view: &Turned, row: &Row) -> [Vec<bool>; 2] {
     })
 }
 
+/// In which columns a row is open from aisle to aisle.
+pub fn open(view: &Turned, row: &Row) -> Vec<bool> {
+    both_open(&open_halves(view, row))
+}
+
 fn both_open([one, two]: &[Vec<bool>; 2]) -> Vec<bool> {
     one.iter().zip(two).map(|(one, two)| *one && *two).collect()
 }

@@ -33,6 +33,8 @@ impl Common {
 
 /// A stretch that ends between cells is so much longer than what is open of it, metres.
 pub const BETWEEN_CELLS: f64 = 0.1;
+/// What stands at a wall reaches so far before it at most: pillars, frames of doors, what leans there, metres.
+const AT_WALL: f64 = 0.6;
 /// What is likelier than this is no way, whatever else is one.
 const LIKELY: f64 = 0.3;
 /// What crosses all rows of a place is a way when it is as wide as other ways and less likely than this by chance; when
@@ -125,18 +127,18 @@ impl<'a> Through<'a> {
         }
     }
 
-    /// The ways between the last of a row and a wall that ends it and the corridors beside it, and whether each is doubtful:
-    /// where all rows beside one another end in line there, for else more rows tell by one another what is a way.
+    /// The ways between the last of a row and a wall that ends it and the corridors beside it, and whether each is as wide as
+    /// bays: where all rows beside one another end in line there, for else more rows tell by one another what is a way.
     pub fn at_walls(&self, strips: &[Strip], placed: &[Beside]) -> Vec<(Strip, bool)> {
         let at_wall = |seen: &Seen, side: usize| {
-            let (ends, is_doubtful) = seen.columns.way_at_end(side)?;
-            seen.is_at_wall(strips, side).then(|| (seen.way(ends), seen.is_bounded(strips, ends), is_doubtful))
+            let (ends, is_as_a_bay) = seen.columns.way_at_end(side)?;
+            seen.is_at_wall(strips, side).then(|| (seen.way(ends), seen.is_bounded(strips, ends), is_as_a_bay))
         };
         let mut found = Vec::new();
         for side in [0, 1] {
             let ways: Vec<_> = self.rows.iter().map(|seen| at_wall(seen, side)).collect();
             for (n, at_wall) in ways.iter().enumerate() {
-                let Some((way, _, is_doubtful)) = at_wall else { continue };
+                let Some((way, _, is_as_a_bay)) = at_wall else { continue };
                 let beside = self.beside(n, way.middle());
                 let is_in_line = |m: &usize| {
                     let is_so = |end: usize, other: &Strip| (other.across[end] - way.across[end]).abs() <= SLACK;
@@ -147,7 +149,7 @@ impl<'a> Through<'a> {
                     && beside.iter().any(is_bounded)
                     && self.are_all(&beside, strips, placed)
                 {
-                    found.push((way.clone(), *is_doubtful));
+                    found.push((way.clone(), *is_as_a_bay));
                 }
             }
         }
@@ -263,7 +265,7 @@ impl<'a> Through<'a> {
             let ends = seen.stretch(common.ends);
             let open = self.open.of(n).iter().map(|&open| seen.stretch(open)).find(|&open| overlap(open, ends) > 0.0);
             self.walled[n][side]
-                && (ends[side] - seen.row.along[side]).abs() <= SLACK
+                && (ends[side] - seen.row.along[side]).abs() <= AT_WALL
                 && open.is_some_and(|open| (open[1 - side] - ends[1 - side]).abs() <= SLACK)
         };
         [0, 1].into_iter().any(|side| common.rows.iter().all(|&n| is_last(n, side)))

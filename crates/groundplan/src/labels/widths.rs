@@ -3,6 +3,7 @@
 use super::alone::Alone;
 use super::beside::placed;
 use super::corridors::Strip;
+use super::empties;
 use super::passing::{Passing, Place};
 use super::rows::SHORTEST;
 use super::sections::is_as_bays;
@@ -43,6 +44,14 @@ impl Widths {
             all[other.direction].0.extend(ways.map(|(way, _)| way.width()));
         }
         all
+    }
+
+    /// Of what leads through all rows beside those that one passes through, between their ends.
+    pub fn of_whole(place: &Place, strips: &[Strip], one: &Passing) -> Self {
+        let rows = one.rows.first().map(|&row| place.rows_with(row)).unwrap_or_default();
+        let is_whole = |own: &Passing| own.is_within && own.rows.len() >= 2 && own.next.is_empty();
+        let ways = strips.iter().zip(&place.passing).filter(|(_, own)| is_whole(own) && rows.contains(&own.rows[0]));
+        Self(ways.map(|(way, _)| way.width()).collect())
     }
 
     /// With one more.
@@ -97,7 +106,10 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
                     ) || place.is_open_through(&strips, own, width))
             };
             let is_as_bays_lie = || alone.is_as_bays_lie(&place, &strips, own, width);
-            stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && !is_bay() && !is_as_bays_lie());
+            let may_be_bay = || view.pitch.is_some_and(|pitch| is_as_bays(width, pitch));
+            let is_empty = || is_told_within && may_be_bay() && empties::are_empty(&place, &strips, n);
+            let lies_as_bays = || is_as_bays_lie() || is_empty();
+            stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && !is_bay() && !lies_as_bays());
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
             let is_beside = |m: usize| {
                 let [low, high] = shared(strips[n].across, strips[m].across);
