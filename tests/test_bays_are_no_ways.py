@@ -106,7 +106,7 @@ def test_a_gap_as_wide_as_a_bay_is_a_way_where_each_of_the_rows_has_one_between_
     assert len(ways_across(picture)) == 2 + (len(gaps) if len(gaps) == len(rows) else 0)
 
 
-def half_empty(width: int, share: float, seed: int) -> Picture:
+def half_empty(width: int, share: float, seed: int, is_closed: bool = False) -> Picture:
     """Three rows of sixteen bays of 2.8 m between posts, some empty, and a way through all of them."""
     draws = np.random.default_rng(seed)
     bay, count = 56, 16
@@ -114,6 +114,8 @@ def half_empty(width: int, share: float, seed: int) -> Picture:
     full = draws.random((len(rows), count)) > share
     # No bay is empty in each row.
     full[draws.integers(0, len(rows), count), np.arange(count)] = True
+    if is_closed:
+        full[:, count // 2 - 1 : count // 2 + 1] = True
     for row, own in zip(rows, full.tolist(), strict=True):
         row[:] = 254
         for n, has_goods in enumerate(own):
@@ -139,3 +141,26 @@ def test_where_a_way_leads_through_all_rows_what_is_as_wide_in_some_is_a_bay_if_
 def test_where_a_wider_way_leads_through_all_rows_an_empty_bay_in_each_of_them_is_none(seed: int) -> None:
     across = ways_across(half_empty(64, 0.2, seed))
     assert across == pytest.approx(sorted([*HEADS, 64 * RESOLUTION]), abs=0.35)
+
+
+@pytest.mark.parametrize("seed", [6, 7, 11])
+def test_what_leads_through_all_rows_between_goods_is_a_way_though_it_is_as_wide_as_empty_bays(seed: int) -> None:
+    across = ways_across(half_empty(56, 0.35, seed, is_closed=True))
+    assert across == pytest.approx(sorted([*HEADS, 56 * RESOLUTION]), abs=0.25)
+
+
+@pytest.mark.parametrize("beside", [(0, 3), (0, 4), (2, 3)])
+def test_ways_lead_through_all_rows_though_a_bay_beside_one_of_them_is_empty(beside: tuple[int, int]) -> None:
+    # Of three rows of twelve bays, with ways of 3 m after the fourth and the eighth and four empty bays elsewhere.
+    bay, width = 56, 60
+    picture, rows = hall(3, 20, 12 * bay + 2 * width)
+    for r, row in enumerate(rows):
+        row[:] = 254
+        for n in range(12):
+            start = n * bay + width * (n // 4)
+            for post in (start, start + bay - 2):
+                row[[0, 1, -2, -1], post : post + 2] = 0
+            if (r, n) not in {beside, (0, 10), (1, 1), (1, 6), (2, 9)}:
+                row[1:-1, start + 3 : start + 26] = 0
+                row[1:-1, start + 30 : start + bay - 3] = 0
+    assert ways_across(picture) == pytest.approx([3.0, 3.0, *HEADS], abs=0.25)

@@ -132,11 +132,12 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
             let metres = || aligned(frame, rest, angle, threads).metres;
             far(angle, separation - HALF_KNOWN_DEG.to_radians()) && (perhaps == 0.0 || metres() >= HALF_KNOWN * perhaps)
         };
-        let sharpest = |start: f64| sharpest(&rest.along(start, tolerance), start, diagonal, threads, worth);
-        // The walls may lie far from where their staircases look like: then what lies along them has not been asked yet.
+        let sought = |start: f64| sharpest(&rest.along(start, tolerance), start, diagonal, threads, worth);
+        // The walls may lie far from where their staircases look like: then what lies along them has not been asked yet, and
+        // where the search ended is not the sharpest, but as far as it went.
         let is_far_off = |angle: f64| angle_between(angle, start) > SCAN_DEG.to_radians();
-        let again = |angle: f64| if is_far_off(angle) { sharpest(angle) } else { Some(angle) };
-        let Some(angle) = sharpest(start).and_then(again) else {
+        let again = |angle: f64| if is_far_off(angle) { sought(angle) } else { Some(angle) };
+        let Some(angle) = sought(start).and_then(again) else {
             continue;
         };
         let angle = undirected(settled(diagonal, angle));

@@ -6,52 +6,75 @@ use super::passing::Place;
 use super::runs::runs;
 use super::seldom;
 use super::widths::are_alike;
+use std::collections::BTreeSet;
 
-/// Of rows some bays are empty when so much of them is open besides their ways.
+/// Of rows some bays are empty when so much of them is open as wide, besides their ways.
 const OPEN: f64 = 0.02;
 /// What is open over so much of a width is as wide.
 const AS_WIDE: f64 = 0.85;
 /// What is open so near to a way is of that, metres.
-const BESIDE: f64 = 0.3;
+const NEAR: f64 = 0.3;
 
-/// True when what leads through some rows between their ends, which is no wider than bays, lies as empty bays do: elsewhere
-/// as much of the rows is open, and not as many lead through each.
-pub fn are_empty(place: &Place, strips: &[Strip], n: usize) -> bool {
+/// True when what leads through some rows between their ends lies as empty bays do: more of the rows is open as wide
+/// elsewhere, and not as many lead through each. What leads through most of them and lies open in the others is none.
+pub fn is_empty(place: &Place, strips: &[Strip], n: usize) -> bool {
     let own = &place.passing[n];
     let (Some(&first), width) = (own.rows.first(), strips[n].width()) else { return false };
-    let rows = place.rows_with(first);
-    let as_many = |row: usize| {
-        let leads = place.passing.iter().zip(strips).filter(|(other, strip)| {
-            other.is_within && !other.next.is_empty() && other.rows.contains(&row) && are_alike(strip.width(), width)
-        });
-        leads.count()
-    };
-    let is_uneven = own.is_within && rows.iter().any(|&row| as_many(row) != as_many(first));
-    if !is_uneven {
+    if !own.is_within {
         return false;
     }
-    let [open, all] = rows
-        .iter()
-        .map(|&row| open_besides(place, strips, row, width))
-        .fold([0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
+    let rows = place.rows_with(first);
+    let alike = |m: &usize| {
+        let other = &place.passing[*m];
+        other.is_within && !other.next.is_empty() && are_alike(strips[*m].width(), width)
+    };
+    let alike: Vec<usize> = (0..strips.len()).filter(alike).collect();
+    let as_many = |row: usize| alike.iter().filter(|&&m| place.passing[m].rows.contains(&row)).count();
+    let own_many = as_many(first);
+    let goes_on = || {
+        let is_most = own.rows.len() > own.next.len() && own.rows.len() + own.next.len() == rows.len();
+        is_most && own.next.iter().all(|&row| is_open_at(place, &strips[n], row))
+    };
+    rows.iter().any(|&row| as_many(row) != own_many) && have_empty_bays(place, strips, &rows, width) && !goes_on()
+}
+
+/// True when more of some rows is open over as much as a width than what leads through them.
+pub fn have_empty_bays(place: &Place, strips: &[Strip], rows: &BTreeSet<usize>, width: f64) -> bool {
+    let [open, all] = rows.iter().fold([0; 2], |sum, &row| {
+        let own = open_besides(place, strips, row, width);
+        [sum[0] + own[0], sum[1] + own[1]]
+    });
     open as f64 > OPEN * all as f64
 }
 
-/// How many columns of a row are open over as much as a width, and how many there are, without what leads through it.
+/// True when a row is open all across a strip, were that longer.
+fn is_open_at(place: &Place, strip: &Strip, row: usize) -> bool {
+    let open = seldom::open(place.views[0], &place.rows[row].0);
+    let [from, to] = columns(place, strip, row, -NEAR);
+    from < to && open[from..to].iter().all(|is| *is)
+}
+
+/// How many columns of a row are open over as much as a width, and how many there are, both without those of its ways.
 fn open_besides(place: &Place, strips: &[Strip], row: usize, width: f64) -> [usize; 2] {
-    let [view, other] = place.views;
-    let rack = &place.rows[row].0;
-    let mut open = seldom::open(view, rack);
-    let mut besides = vec![true; open.len()];
-    let (first, middle) = (view.column(rack.along[0]), f64::midpoint(rack.across[0], rack.across[1]));
-    let column = |u: f64| view.column(u).saturating_sub(first).min(open.len());
+    let view = place.views[0];
+    let mut open = seldom::open(view, &place.rows[row].0);
+    let mut is_rest = vec![true; open.len()];
     for (strip, _) in strips.iter().zip(&place.passing).filter(|(_, passing)| passing.rows.contains(&row)) {
-        let [_, u] = view.crossing(other, middle, strip.middle());
-        let reach = strip.width() / 2.0 + BESIDE;
-        besides[column(u - reach)..column(u + reach)].fill(false);
+        let [from, to] = columns(place, strip, row, NEAR);
+        is_rest[from..to].fill(false);
     }
-    open.iter_mut().zip(&besides).for_each(|(open, is)| *open &= is);
+    open.iter_mut().zip(&is_rest).for_each(|(open, is)| *open &= is);
     let least = (AS_WIDE * width / view.cell) as usize;
     let wide = runs(&open, true).into_iter().map(|(from, to)| to - from).filter(|length| *length >= least);
-    [wide.sum(), besides.iter().filter(|is| **is).count()]
+    [wide.sum(), is_rest.iter().filter(|is| **is).count()]
+}
+
+/// From which to which of a row's columns a strip would cross it, and so much more on either side, metres.
+fn columns(place: &Place, strip: &Strip, row: usize, more: f64) -> [usize; 2] {
+    let [view, other] = place.views;
+    let row = &place.rows[row].0;
+    let [first, end] = row.along.map(|u| view.column(u));
+    let [_, u] = view.crossing(other, f64::midpoint(row.across[0], row.across[1]), strip.middle());
+    let reach = strip.width() / 2.0 + more;
+    [u - reach, u + reach].map(|u| view.column(u).saturating_sub(first).min(end - first))
 }

@@ -3,6 +3,7 @@
 use super::Evidence;
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
+use super::empties;
 use super::look::Look;
 use super::passing::{self, Place};
 use super::rows::Row;
@@ -57,21 +58,20 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     known.extend(strips.iter().filter(|strip| !strip.bays).cloned());
     let places = LazyCell::new(|| Place::of_each(views, &known));
     let staggered = LazyCell::new(|| Widths::of_staggered(views, &known, &places));
-    // What passes the ends is as wide as the hall leaves: if that is a bay's width it tells no others.
+    // What passes the ends is as wide as the hall leaves: if that is a bay's width it tells no others, nor that any is a way.
     let is_racked = views.iter().any(|view| view.pitch.is_some());
     let tells = |n: &usize| !is_racked || !passing::is_past_ends_as_bays(&known, &places, *n);
     let telling = (first..known.len()).filter(tells).map(|n| &known[n]);
     let mut sure = Widths::of(views, telling.chain(&gates));
+    let is_any_known = |direction: usize| known.iter().any(|way| way.direction == direction);
     let within = LazyCell::new(|| passing::are_within(views, &places));
-    let are_known: Vec<bool> =
-        views.iter().map(|view| known.iter().any(|way| way.direction == view.direction)).collect();
     let through = through.find(strips, &mut sure, |direction| within[direction]);
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
     let open = LazyCell::new(|| passing::open_through(views, &known, &doubtful));
     let is_told = |n: usize, gate: &Strip| {
         let widths = &sure[gate.direction];
         let pitch = crossing(views, gate.direction).and_then(|view| view.pitch);
-        !are_known[gate.direction]
+        !is_any_known(gate.direction)
             || widths.have(gate.width() + BETWEEN_CELLS, pitch)
             || (!within[gate.direction] && open[n])
     };
@@ -93,7 +93,8 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     Gates { ways, as_bays: in_line(as_bays) }
 }
 
-/// Those of some ways that are as wide as what leads through all rows of their place between their ends, where anything does.
+/// Those of some ways, one like another in each row, that are as wide as what leads through all rows of their place between
+/// their ends: where anything does, and bays are empty, others may be of these.
 fn as_wide_as_others(views: &[Turned], strips: &[Strip], ways: &[Strip], some: Vec<Strip>) -> Vec<Strip> {
     if some.is_empty() {
         return some;
@@ -101,12 +102,19 @@ fn as_wide_as_others(views: &[Turned], strips: &[Strip], ways: &[Strip], some: V
     let known = strips.iter().filter(|strip| !strip.bays).chain(ways);
     let all: Vec<Strip> = some.iter().chain(known).cloned().collect();
     let places = Place::of_each(views, &all);
-    let is_as_wide = |&n: &usize| {
-        let whole = |place: &Place| Widths::of_whole(place, &all, &place.passing[n]);
-        let is_so = |widths: Widths| widths.is_empty() || widths.have(all[n].width() + BETWEEN_CELLS, None);
-        places.iter().all(|place| is_so(whole(place)))
+    let stays = |&n: &usize| {
+        let width = all[n].width();
+        let in_place = |place: &Place| {
+            let Some(&first) = place.passing[n].rows.first() else { return true };
+            let rows = place.rows_with(first);
+            let whole = Widths::of_whole(place, &all, &rows);
+            whole.is_empty()
+                || whole.have(width + BETWEEN_CELLS, None)
+                || !empties::have_empty_bays(place, &all, &rows, width)
+        };
+        places.iter().all(in_place)
     };
-    (0..some.len()).filter(is_as_wide).map(|n| all[n].clone()).collect()
+    (0..some.len()).filter(stays).map(|n| all[n].clone()).collect()
 }
 
 /// The rows with what is asked of them.

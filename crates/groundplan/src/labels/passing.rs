@@ -108,13 +108,12 @@ pub fn are_within(views: &[Turned], places: &[Place]) -> Vec<bool> {
 /// True when one of some strips leads past the ends of rows alone and is as wide as their bays: it is as wide as the hall
 /// leaves.
 pub fn is_past_ends_as_bays(strips: &[Strip], places: &[Place], n: usize) -> bool {
-    let passes = |place: &&Place| !place.passing[n].rows.is_empty();
-    let is_so = |place: &Place| {
+    let passed: Vec<&Place> = places.iter().filter(|place| !place.passing[n].rows.is_empty()).collect();
+    let is_so = |place: &&Place| {
         let is_as_bays = |pitch| is_as_bays(strips[n].width(), pitch);
         !place.passing[n].is_within && place.views[0].pitch.is_some_and(is_as_bays)
     };
-    let mut passed = places.iter().filter(passes).peekable();
-    passed.peek().is_some() && passed.all(is_so)
+    !passed.is_empty() && passed.iter().all(is_so)
 }
 
 /// Which of some more strips lead through rows that are open more often than by chance, and end before others.

@@ -10,6 +10,7 @@ use super::sections::is_as_bays;
 use super::turned::Turned;
 use crate::ends::{shared, sorted, wider};
 use std::cell::LazyCell;
+use std::collections::BTreeSet;
 
 /// Ways across a place are of one width but for this share.
 const ALIKE: f64 = 0.15;
@@ -46,9 +47,8 @@ impl Widths {
         all
     }
 
-    /// Of what leads through all rows beside those that one passes through, between their ends.
-    pub fn of_whole(place: &Place, strips: &[Strip], one: &Passing) -> Self {
-        let rows = one.rows.first().map(|&row| place.rows_with(row)).unwrap_or_default();
+    /// Of what leads through all of some rows one beside another, between their ends.
+    pub fn of_whole(place: &Place, strips: &[Strip], rows: &BTreeSet<usize>) -> Self {
         let is_whole = |own: &Passing| own.is_within && own.rows.len() >= 2 && own.next.is_empty();
         let ways = strips.iter().zip(&place.passing).filter(|(_, own)| is_whole(own) && rows.contains(&own.rows[0]));
         Self(ways.map(|(way, _)| way.width()).collect())
@@ -81,8 +81,8 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 
 /// The strips without those that lead through some rows of a place and have no width of what leads through all: bays; nor
 /// those at a wall that the rows beside go on to. Where nothing leads through all but past their ends, what has no bays'
-/// width is none, nor what leads through rows of two racks that are open more often than by chance. Nor those beside which,
-/// with no rack between, one leads through more rows.
+/// width is none, nor what leads through rows of two racks that are open more often than by chance; where something does, what
+/// lies as empty bays do is one. Nor those beside which, with no rack between, one leads through more rows.
 pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let placed = placed(views, strips.iter().map(Strip::place));
@@ -107,7 +107,7 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
             };
             let is_as_bays_lie = || alone.is_as_bays_lie(&place, &strips, own, width);
             let may_be_bay = || view.pitch.is_some_and(|pitch| is_as_bays(width, pitch));
-            let is_empty = || is_told_within && may_be_bay() && empties::are_empty(&place, &strips, n);
+            let is_empty = || is_told_within && may_be_bay() && empties::is_empty(&place, &strips, n);
             let lies_as_bays = || is_as_bays_lie() || is_empty();
             stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && !is_bay() && !lies_as_bays());
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
