@@ -9,12 +9,14 @@ import subprocess
 import sys
 import time
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pytest
+from _legs import with_a_way
 from _program import call, files, hall, write_pgm
 from _reading import refused
 from PIL import Image
@@ -257,9 +259,11 @@ def test_a_map_is_equal_wherever_its_pixels_are(tmp_path: Path, small_memory: Pa
     assert np.array_equal(parts.pixels, read(tmp_path / "map.pgm", resolution=0.05).pixels)
 
 
-def test_a_large_map_surveyed_in_little_memory_has_the_survey_of_one_of_which_all_is_kept() -> None:
-    pixels = np.full((11_600, 11_600), 205, np.uint8)
-    room = np.asarray(warehouse(seed=3).map.pixels)
+@pytest.mark.parametrize("made", [lambda: np.asarray(warehouse(seed=3).map.pixels), with_a_way], ids=["full", "legs"])
+def test_a_large_map_surveyed_in_little_memory_has_the_survey_of_one_of_which_all_is_kept(
+    made: Callable[[], Pixels],
+) -> None:
+    pixels, room = np.full((11_600, 11_600), 205, np.uint8), made()
     height, width = room.shape
     pixels[:height, :width] = room
     pixels[-height:, -width:] = room

@@ -34,6 +34,10 @@ impl Grounds {
         Self { corners, near }
     }
 
+    pub fn is_empty(&self) -> bool {
+        self.corners.is_empty()
+    }
+
     /// From where to where each rack goes that lies at a place across, which is in a row of cells.
     pub fn at(&self, row: usize, v: f64) -> impl Iterator<Item = [f64; 2]> {
         let near = self.near.get(row / ROWS).into_iter().flatten();

@@ -17,6 +17,16 @@ const NEAR: (f64, f64) = (0.12, 2.0);
 /// the faces of single goods.
 const STRONG: (f64, f64) = (2.0, 0.08);
 
+/// What the edge pixels tell of the lines of a view, whatever stands on legs there.
+#[derive(Default)]
+pub struct Lined {
+    offsets: Vec<f64>,
+    /// Which of them are no lines of the map, but sides of racks on legs.
+    are_sides: Vec<bool>,
+    /// In which columns something lies along each, and in which any touches it.
+    on: Vec<[Bits; 2]>,
+}
+
 impl Turned {
     /// Its lines, and in which columns something lies along each or touches it; racks on legs have their sides as lines.
     pub fn line(&mut self, evidence: &Evidence) {
@@ -29,20 +39,38 @@ impl Turned {
             .collect();
         offsets.sort_by(f64::total_cmp);
         let near = Self::near_line(frame);
-        let sides = self.grounds.sides();
-        for &(offset, _) in &sides {
+        let mut are_sides = vec![false; offsets.len()];
+        for (offset, _) in self.grounds.sides() {
             let at = offsets.partition_point(|&other| other < offset);
             let others = &offsets[at.saturating_sub(1)..offsets.len().min(at + 1)];
             if others.iter().all(|other| (other - offset).abs() > near) {
                 offsets.insert(at, offset);
+                are_sides.insert(at, true);
             }
         }
         let key = |n: usize| self.key_on_line(evidence, offsets[n]);
         let on = evidence.recall.lined.or_find_some(offsets.len(), key, |some| {
             self.on_lines(evidence, &some.iter().map(|&n| offsets[n]).collect::<Vec<_>>())
         });
-        let (mut covered, mut touched): (Vec<_>, Vec<_>) =
-            on.into_iter().map(|[covered, touched]| (covered, touched)).unzip();
+        let lined = Lined { offsets, are_sides, on };
+        self.lie(frame, &lined);
+        if !self.grounds.is_empty() {
+            self.lined = Arc::new(lined);
+        }
+    }
+
+    /// Takes over what is known of its lines, but for those that are sides of racks which do not stand there.
+    pub fn lie(&mut self, frame: &Frame, lined: &Lined) {
+        let near = Self::near_line(frame);
+        let sides = self.grounds.sides();
+        let is_there = |n: &usize| {
+            let is_near = |&(side, _): &(f64, _)| (side - lined.offsets[*n]).abs() <= near;
+            !lined.are_sides[*n] || sides.iter().any(is_near)
+        };
+        let there: Vec<usize> = (0..lined.offsets.len()).filter(is_there).collect();
+        let offsets: Vec<f64> = there.iter().map(|&n| lined.offsets[n]).collect();
+        let [mut covered, mut touched] =
+            [0, 1].map(|what| there.iter().map(|&n| lined.on[n][what].clone()).collect::<Vec<_>>());
         let lines = OnLine::new(&offsets, near);
         for (offset, along) in sides {
             for line in lines.at(offset) {

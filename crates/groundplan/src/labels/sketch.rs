@@ -103,15 +103,9 @@ impl<'a> Sight<'a, Free> {
         Self { look: look.get(), views, on_legs, free }
     }
 
-    /// And what lies between the lines, for which of the gradients the specks are enough.
+    /// And what lies between the lines.
     pub fn seen(mut self, evidence: &Evidence) -> Self {
-        let Self { look, views, .. } = &mut self;
-        quarter::see(views, &evidence.scene(), look);
-        each(views.iter_mut().collect(), evidence.threads, |view: &mut Turned| {
-            view.glaze();
-            view.recur(&evidence.shared_out());
-        });
-        panes::share(views);
+        see(evidence, &self.look, &mut self.views);
         self
     }
 }
@@ -140,36 +134,51 @@ impl Sketch {
 
 /// The plan, and the views that it is of: where ways across rows lead over the ground of racks on legs, of those that are
 /// left beside the ways.
-fn planned(evidence: &Evidence, look: &Look, views: Vec<Turned>, on_legs: &[Row]) -> (Vec<Turned>, Plan) {
+fn planned(evidence: &Evidence, look: &Look, mut views: Vec<Turned>, on_legs: &[Row]) -> (Vec<Turned>, Plan) {
     let (plan, across) = Plan::of(evidence, look, &views, on_legs);
     if on_legs.is_empty() || plan.rows.is_empty() {
         return (views, plan);
     }
+    // Of a large map there is no room for what is seen with racks and without them.
+    let is_large = views.iter().any(Turned::is_large);
+    if is_large {
+        views.iter_mut().for_each(Turned::unsee);
+    }
     // Goods that stand between legs tell where there are none.
-    let over = gates::through_several(evidence, look, &seen(evidence, look, &[]), &plan.strips, &plan.rows);
+    let bare = seen(evidence, look, &views, &[]);
+    let over = gates::through_several(evidence, look, &bare, &plan.strips, &plan.rows);
+    drop(bare);
+    if is_large {
+        views = seen(evidence, look, &views, on_legs);
+    }
     let left = carried::left_beside(&views, &over, on_legs);
     let left = carried::without_ways(evidence, &views, &joined::apart(&views, [across, over].concat()), &left);
     if left == on_legs {
         return (views, plan);
     }
-    let views = seen(evidence, look, &left);
+    drop(plan);
+    views.iter_mut().for_each(Turned::unsee);
+    let views = seen(evidence, look, &views, &left);
     let (plan, _) = Plan::of(evidence, look, &views, &left);
     (views, plan)
 }
 
-/// What is seen where some racks stand on legs.
-fn seen(evidence: &Evidence, look: &Look, on_legs: &[Row]) -> Vec<Turned> {
+/// What is seen where other racks than those of some views stand on legs.
+fn seen(evidence: &Evidence, look: &Look, views: &[Turned], on_legs: &[Row]) -> Vec<Turned> {
     let scene = evidence.scene();
-    let count = evidence.directions.angles.len();
-    let mut views: Vec<_> = (0..count).map(|direction| Turned::new(&scene, direction, on_legs)).collect();
-    quarter::see(&mut views, &scene, look);
+    let mut views: Vec<_> = views.iter().map(|view| view.with(&scene, on_legs)).collect();
+    see(evidence, look, &mut views);
+    views
+}
+
+/// What lies between the lines, for which of the gradients the specks are enough.
+fn see(evidence: &Evidence, look: &Look, views: &mut [Turned]) {
+    quarter::see(views, &evidence.scene(), look);
     each(views.iter_mut().collect(), evidence.threads, |view: &mut Turned| {
-        view.line(evidence);
         view.glaze();
         view.recur(&evidence.shared_out());
     });
-    panes::share(&mut views);
-    views
+    panes::share(views);
 }
 
 /// The ways, what they meet and where they end, and the rows between them.

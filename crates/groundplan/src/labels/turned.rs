@@ -2,6 +2,7 @@
 //! it is kept. What its cells hold is in `sampled.rs`, what lies on its lines in `lined.rs`.
 
 use super::grounds::Grounds;
+use super::lined::Lined;
 use super::look::{LANES, Look};
 use super::panes::{Across, Pane};
 use super::quarter::Quarter;
@@ -45,6 +46,8 @@ pub struct Turned {
     pub covered: Arc<Vec<Bits>>,
     /// The same for what only touches it: posts, and the ends of what lies across.
     pub touched: Arc<Vec<Bits>>,
+    /// The same by the edge pixels alone, where racks stand on legs.
+    pub(super) lined: Arc<Lined>,
     /// Where walls along its lines are of glass.
     pub panes: Arc<Vec<Pane>>,
     /// And those of others that cross it.
@@ -64,6 +67,14 @@ impl Turned {
     pub fn new(scene: &Scene, direction: usize, on_legs: &[Row]) -> Self {
         let mut made = Self::by_itself(scene, direction).turned_from_another(scene);
         made.grounds = Grounds::new(scene.directions, &made, on_legs);
+        made
+    }
+
+    /// The same where other racks stand on legs; nothing is seen yet between its lines.
+    pub fn with(&self, scene: &Scene, on_legs: &[Row]) -> Self {
+        let mut made = Self::new(scene, self.direction, on_legs);
+        made.lie(&scene.grid.frame, &self.lined);
+        made.lined = Arc::clone(&self.lined);
         made
     }
 
@@ -94,6 +105,7 @@ impl Turned {
             offsets: Arc::default(),
             covered: Arc::default(),
             touched: Arc::default(),
+            lined: Arc::default(),
             panes: Arc::default(),
             across: Arc::default(),
             rows: Arc::default(),
@@ -142,8 +154,13 @@ impl Turned {
     pub fn let_go(&mut self) {
         self.cells = Cells::default();
         (self.rows, self.offsets, self.keys.1) = (Arc::default(), Arc::default(), Arc::default());
-        (self.covered, self.touched) = (Arc::default(), Arc::default());
+        (self.covered, self.touched, self.lined) = (Arc::default(), Arc::default(), Arc::default());
         (self.panes, self.across) = (Arc::default(), Arc::default());
+    }
+
+    /// Lets go of what is seen between its lines.
+    pub fn unsee(&mut self) {
+        (self.cells, self.rows) = (Cells::default(), Arc::default());
     }
 
     /// True when the cells are too many for sums of all rows.
@@ -161,6 +178,7 @@ impl Turned {
             offsets: Arc::clone(&self.offsets),
             covered: Arc::clone(&self.covered),
             touched: Arc::clone(&self.touched),
+            lined: Arc::default(),
             panes: Arc::clone(&self.panes),
             across: Arc::clone(&self.across),
             rows: Arc::clone(&self.rows),
