@@ -10,8 +10,6 @@ use std::collections::BTreeSet;
 
 /// Of rows some bays are empty when so much of them is open as wide, besides their ways.
 const OPEN: f64 = 0.02;
-/// What is open over so much of a width is as wide.
-const AS_WIDE: f64 = 0.85;
 /// What is open so near to a way is of that, metres.
 const NEAR: f64 = 0.3;
 
@@ -24,12 +22,11 @@ pub fn is_empty(place: &Place, strips: &[Strip], n: usize) -> bool {
         return false;
     }
     let rows = place.rows_with(first);
-    let alike = |m: &usize| {
-        let other = &place.passing[*m];
-        other.is_within && !other.next.is_empty() && are_alike(strips[*m].width(), width)
+    let is_alike = |m: &&usize| {
+        let other = &place.passing[**m];
+        other.is_within && !other.next.is_empty() && are_alike(strips[**m].width(), width)
     };
-    let alike: Vec<usize> = (0..strips.len()).filter(alike).collect();
-    let as_many = |row: usize| alike.iter().filter(|&&m| place.passing[m].rows.contains(&row)).count();
+    let as_many = |row: usize| place.through[row].iter().filter(is_alike).count();
     let own_many = as_many(first);
     let goes_on = || {
         let is_most = own.rows.len() > own.next.len() && own.rows.len() + own.next.len() == rows.len();
@@ -59,12 +56,12 @@ fn open_besides(place: &Place, strips: &[Strip], row: usize, width: f64) -> [usi
     let view = place.views[0];
     let mut open = seldom::open(view, &place.rows[row].0);
     let mut is_rest = vec![true; open.len()];
-    for (strip, _) in strips.iter().zip(&place.passing).filter(|(_, passing)| passing.rows.contains(&row)) {
-        let [from, to] = columns(place, strip, row, NEAR);
+    for &way in &place.through[row] {
+        let [from, to] = columns(place, &strips[way], row, NEAR);
         is_rest[from..to].fill(false);
     }
     open.iter_mut().zip(&is_rest).for_each(|(open, is)| *open &= is);
-    let least = (AS_WIDE * width / view.cell) as usize;
+    let least = (seldom::AS_WIDE * width / view.cell) as usize;
     let wide = runs(&open, true).into_iter().map(|(from, to)| to - from).filter(|length| *length >= least);
     [wide.sum(), is_rest.iter().filter(|is| **is).count()]
 }

@@ -24,6 +24,8 @@ pub struct Place<'a> {
     pub rows: Vec<(Row, [usize; 2])>,
     /// Of each strip.
     pub passing: Vec<Passing>,
+    /// Which strips lead through each row.
+    pub through: Vec<Vec<usize>>,
     /// Above and below each aisle.
     beside: Vec<[Vec<usize>; 2]>,
     /// Which of the rows are walls between halls.
@@ -39,9 +41,9 @@ impl<'a> Place<'a> {
         let along = longest(&all, strips.len());
         let of = |layout: Layout<'a>| {
             let views = [layout.view, crossing(views, layout.view.direction)?];
-            let passing = layout.passed_by(views, strips, &placed, &along);
+            let (passing, through) = layout.passed_by(views, strips, &placed, &along);
             let Layout { aisles, rows, beside, walls, .. } = layout;
-            Some(Self { views, aisles, rows, passing, beside, walls })
+            Some(Self { views, aisles, rows, passing, through, beside, walls })
         };
         all.into_iter().filter_map(of).collect()
     }
@@ -90,6 +92,11 @@ pub struct Passing {
 }
 
 impl Passing {
+    /// True when it leads through several rows, and no more are beside them.
+    pub fn is_whole(&self) -> bool {
+        self.rows.len() >= 2 && self.next.is_empty()
+    }
+
     /// True when it is the same rows that another passes through, and more.
     pub fn holds_more_than(&self, other: &Self) -> bool {
         self.rows.len() > other.rows.len() && other.rows.iter().all(|row| self.rows.contains(row))
@@ -187,14 +194,15 @@ impl<'a> Layout<'a> {
         Self { view, aisles, rows, beside, walls }
     }
 
-    /// What each strip passes through of the rows, which lie between aisles, along which it is not.
+    /// What each strip passes through of the rows, which lie between aisles, along which it is not; and which strips do so of
+    /// each row.
     fn passed_by(
         &self,
         [view, other]: [&Turned; 2],
         strips: &[Strip],
         placed: &[Beside],
         along: &[f64],
-    ) -> Vec<Passing> {
+    ) -> (Vec<Passing>, Vec<Vec<usize>>) {
         let Self { aisles, rows, beside, walls, .. } = self;
         let widest = corridors::widest(strips);
         // Where a strip would cross a row if it were as long: along the strip, if it is none of the aisles' own kind.
@@ -213,7 +221,6 @@ impl<'a> Layout<'a> {
         let crosses_at = |n: usize, m: usize| place(n, &rows[m].0, rows[m].1);
         let crosses = |n: usize, s: f64| holds(strips[n].along, s);
         let mut crossed: Vec<Vec<usize>> = vec![Vec::new(); strips.len()];
-        // And what leads through each row.
         let mut through: Vec<Vec<usize>> = vec![Vec::new(); rows.len()];
         for (m, (row, _)) in rows.iter().enumerate() {
             for n in leading_across([view, other], placed, row, widest) {
@@ -244,6 +251,6 @@ impl<'a> Layout<'a> {
             let next = next().filter(ends_before).copied().collect();
             Passing { rows: own.clone(), rest, next, is_led_on, is_within }
         };
-        crossed.iter().enumerate().map(of_strip).collect()
+        (crossed.iter().enumerate().map(of_strip).collect(), through)
     }
 }

@@ -9,7 +9,7 @@ use super::turned::Turned;
 /// Two racks back to back are so deep, metres.
 const TWO: f64 = 1.5;
 /// What is open over so much of a width is as wide.
-const AS_WIDE: f64 = 0.85;
+pub const AS_WIDE: f64 = 0.85;
 /// So many cells on either side of what is open are of its ends.
 const ENDS: usize = 2;
 /// Fewer such rows tell nothing.

@@ -38,8 +38,9 @@ const AT_WALL: f64 = 0.6;
 /// What is likelier than this is no way, whatever else is one.
 const LIKELY: f64 = 0.3;
 /// What crosses all rows of a place is a way when it is as wide as other ways and less likely than this by chance; when
-/// none is known; when none is between the rows' ends and it is not much narrower than the aisles beside, more so where racks end
-/// on both its sides; and when it has another width than those. Past the ends of all rows there are ways in most halls, and LIKELY is enough.
+/// none is known; when none is between the rows' ends and it is not much narrower than the aisles beside, more so where racks
+/// end on both its sides; and when it has another width than those. Past the ends of all rows there are ways in most halls, and
+/// LIKELY is enough.
 const ALIKE: f64 = 0.05;
 const FIRST: f64 = 0.01;
 const PAST: f64 = 0.003;
@@ -178,9 +179,10 @@ impl<'a> Through<'a> {
         };
         let is_told = |n: usize, gate: &Strip, way: [f64; 2]| {
             let beside = self.beside(n, gate.middle());
-            width(way) >= family::LED_TO * self.rows[n].widest
-                && beside.len() > 1
-                && beside.into_iter().all(|m| alike(m, way) == alike(n, way))
+            width(way) >= family::LED_TO * self.rows[n].widest && beside.len() > 1 && {
+                let own = alike(n, way);
+                beside.into_iter().all(|m| alike(m, way) == own)
+            }
         };
         let gates = self.rows.iter().enumerate().flat_map(|(n, seen)| {
             let ways = seen.ways.iter().filter(|way| seen.columns.is_as_bays(**way));

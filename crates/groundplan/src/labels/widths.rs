@@ -49,9 +49,9 @@ impl Widths {
 
     /// Of what leads through all of some rows one beside another, between their ends.
     pub fn of_whole(place: &Place, strips: &[Strip], rows: &BTreeSet<usize>) -> Self {
-        let is_whole = |own: &Passing| own.is_within && own.rows.len() >= 2 && own.next.is_empty();
-        let ways = strips.iter().zip(&place.passing).filter(|(_, own)| is_whole(own) && rows.contains(&own.rows[0]));
-        Self(ways.map(|(way, _)| way.width()).collect())
+        let ways: BTreeSet<usize> = rows.iter().flat_map(|&row| &place.through[row]).copied().collect();
+        let is_whole = |way: &&usize| place.passing[**way].is_within && place.passing[**way].is_whole();
+        Self(ways.iter().filter(is_whole).map(|&way| strips[way].width()).collect())
     }
 
     /// With one more.
@@ -88,7 +88,7 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
     for place in Place::of_each(views, &strips) {
         let Place { views: [view, other], passing, .. } = &place;
-        let whole = |n: &usize| passing[*n].rows.len() >= 2 && passing[*n].next.is_empty();
+        let whole = |n: &usize| passing[*n].is_whole();
         let is_told_within = (0..strips.len()).filter(whole).any(|n| passing[n].is_within);
         let known = Widths((0..strips.len()).filter(whole).map(|n| strips[n].width()).collect());
         let alone = LazyCell::new(|| Alone::new(&place, &strips));
