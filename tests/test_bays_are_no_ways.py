@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -106,25 +107,33 @@ def test_a_gap_as_wide_as_a_bay_is_a_way_where_each_of_the_rows_has_one_between_
     assert len(ways_across(picture)) == 2 + (len(gaps) if len(gaps) == len(rows) else 0)
 
 
+BAY = 56  # pixels: 2.8 m
+
+
+def fill(row: Picture, starts: Iterable[int], full: Iterable[bool]) -> None:
+    """Draws bays between posts into a row, two pallets in each that is full."""
+    row[:] = 254
+    for start, has_goods in zip(starts, full, strict=True):
+        for post in (start, start + BAY - 2):
+            row[[0, 1, -2, -1], post : post + 2] = 0
+        if has_goods:
+            row[1:-1, start + 3 : start + 26] = 0
+            row[1:-1, start + 30 : start + BAY - 3] = 0
+
+
 def half_empty(width: int, share: float, seed: int, is_closed: bool = False) -> Picture:
     """Three rows of sixteen bays of 2.8 m between posts, some empty, and a way through all of them."""
     draws = np.random.default_rng(seed)
-    bay, count = 56, 16
-    picture, rows = hall(3, 20, count * bay + width)
+    count = 16
+    picture, rows = hall(3, 20, count * BAY + width)
     full = draws.random((len(rows), count)) > share
     # No bay is empty in each row.
     full[draws.integers(0, len(rows), count), np.arange(count)] = True
     if is_closed:
         full[:, count // 2 - 1 : count // 2 + 1] = True
+    starts = [n * BAY + (width if n >= count // 2 else 0) for n in range(count)]
     for row, own in zip(rows, full.tolist(), strict=True):
-        row[:] = 254
-        for n, has_goods in enumerate(own):
-            start = n * bay + (width if n >= count // 2 else 0)
-            for post in (start, start + bay - 2):
-                row[[0, 1, -2, -1], post : post + 2] = 0
-            if has_goods:
-                row[1:-1, start + 3 : start + 26] = 0
-                row[1:-1, start + 30 : start + bay - 3] = 0
+        fill(row, starts, own)
     return picture
 
 
@@ -152,15 +161,10 @@ def test_what_leads_through_all_rows_between_goods_is_a_way_though_it_is_as_wide
 @pytest.mark.parametrize("beside", [(0, 3), (0, 4), (2, 3)])
 def test_ways_lead_through_all_rows_though_a_bay_beside_one_of_them_is_empty(beside: tuple[int, int]) -> None:
     # Of three rows of twelve bays, with ways of 3 m after the fourth and the eighth and four empty bays elsewhere.
-    bay, width = 56, 60
-    picture, rows = hall(3, 20, 12 * bay + 2 * width)
+    width = 60
+    picture, rows = hall(3, 20, 12 * BAY + 2 * width)
+    starts = [n * BAY + width * (n // 4) for n in range(12)]
+    empty = {beside, (0, 10), (1, 1), (1, 6), (2, 9)}
     for r, row in enumerate(rows):
-        row[:] = 254
-        for n in range(12):
-            start = n * bay + width * (n // 4)
-            for post in (start, start + bay - 2):
-                row[[0, 1, -2, -1], post : post + 2] = 0
-            if (r, n) not in {beside, (0, 10), (1, 1), (1, 6), (2, 9)}:
-                row[1:-1, start + 3 : start + 26] = 0
-                row[1:-1, start + 30 : start + bay - 3] = 0
+        fill(row, starts, [(r, n) not in empty for n in range(12)])
     assert ways_across(picture) == pytest.approx([3.0, 3.0, *HEADS], abs=0.25)

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
+import numpy.typing as npt
 import pytest
 import zoo
 from zoo import RESOLUTION, TURNS, ZOO, Canvas, apart
 
 import groundplan
 from groundplan import simulate
+
+Mask = npt.NDArray[np.bool_]
 
 
 def angles_of(picture: zoo.Picture) -> zoo.Points:
@@ -77,43 +82,52 @@ def test_a_turned_map_has_the_turned_directions(name: str, turn: int) -> None:
     assert (gaps < np.radians(0.15)).sum() == len(original), np.degrees(gaps)
 
 
+def assert_square(
+    degrees: float,
+    racks: Callable[[zoo.Points, zoo.Points], Mask],
+    side: float,
+    length: float,
+    depth: float,
+    wall: float,
+) -> None:
+    """A turned hall of racks, drawn at 0.1 m a pixel on a map of so many metres, has its own two directions."""
+    angle = np.radians(degrees)
+    y, x = np.mgrid[-side / 2 : side / 2 : 0.1, -side / 2 : side / 2 : 0.1]
+    along = x * np.cos(angle) + y * np.sin(angle) + length / 2
+    across = y * np.cos(angle) - x * np.sin(angle) + depth / 2
+    inside = (along > 0) & (along < length) & (across > 0) & (across < depth)
+    walled = (along > -wall) & (along < length + wall) & (across > -wall) & (across < depth + wall) & ~inside
+    taken = walled | (inside & racks(along, across))
+    picture = np.where(taken, 0, np.where(inside, 254, 205)).astype(np.uint8)
+    found = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=0.1).directions.angles
+    assert len(found) == 2
+    assert (apart([angle, angle + np.pi / 2], found).min(axis=1) < np.radians(0.1)).all(), np.degrees(found)
+
+
 @pytest.mark.parametrize("degrees", [5.5, 6.0, 6.5, 45.0, 83.5])
 @pytest.mark.parametrize(("rows", "blocks"), [(13, 5), (6, 3)])
 def test_narrow_rows_on_a_coarse_map_are_measured_where_staircases_look_like_other_directions(
     rows: int, blocks: int, degrees: float
 ) -> None:
-    """Racks of 10.8 m by 1.3 m, 1.3 m apart, with ways of 4.5 m between the blocks, at 0.1 m a pixel."""
-    angle = np.radians(degrees)
+    """Racks of 10.8 m by 1.3 m, 1.3 m apart, with ways of 4.5 m between the blocks."""
     length, depth = blocks * 15.3 + 4.5, rows * 2.6 + 1.3
-    half = 0.6 * np.hypot(length, depth)
-    y, x = np.mgrid[-half:half:0.1, -half:half:0.1]
-    along = x * np.cos(angle) + y * np.sin(angle) + length / 2
-    across = y * np.cos(angle) - x * np.sin(angle) + depth / 2
-    inside = (along > 0) & (along < length) & (across > 0) & (across < depth)
-    racks = inside & (along % 15.3 > 4.5) & (across % 2.6 > 1.3)
-    walls = (along > -0.2) & (along < length + 0.2) & (across > -0.2) & (across < depth + 0.2) & ~inside
-    picture = np.where(racks | walls, 0, np.where(inside, 254, 205)).astype(np.uint8)
-    found = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=0.1).directions.angles
-    assert len(found) == 2
-    assert (apart([angle, angle + np.pi / 2], found).min(axis=1) < np.radians(0.1)).all(), np.degrees(found)
+
+    def racks(along: zoo.Points, across: zoo.Points) -> Mask:
+        return (along % 15.3 > 4.5) & (across % 2.6 > 1.3)
+
+    assert_square(degrees, racks, 1.2 * float(np.hypot(length, depth)), length=length, depth=depth, wall=0.2)
 
 
 @pytest.mark.parametrize("wall", [0.3, 0.32, 0.36, 0.4])
 @pytest.mark.parametrize("degrees", [35.0, 37.2, 40.2, 41.6, 48.6, 53.0, 55.0])
 def test_cross_walls_of_a_hall_turned_by_much_are_square_to_its_racks(degrees: float, wall: float) -> None:
-    """Seven racks of 19 m by 1.8 m, 2.1 m apart, in walls of three or four pixels of 0.1 m, drawn without noise."""
-    angle = np.radians(degrees)
-    length, depth, half = 25.36, 29.42, 23.4
-    y, x = np.mgrid[-half:half:0.1, -half:half:0.1]
-    along = x * np.cos(angle) + y * np.sin(angle) + length / 2
-    across = y * np.cos(angle) - x * np.sin(angle) + depth / 2
-    inside = (along > 0) & (along < length) & (across > 0) & (across < depth)
-    racks = inside & (along > 3.16) & (along < length - 3.16) & (across % 3.9 > 2.12)
-    walls = (along > -wall) & (along < length + wall) & (across > -wall) & (across < depth + wall) & ~inside
-    picture = np.where(racks | walls, 0, np.where(inside, 254, 205)).astype(np.uint8)
-    found = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=0.1).directions.angles
-    assert len(found) == 2
-    assert (apart([angle, angle + np.pi / 2], found).min(axis=1) < np.radians(0.1)).all(), np.degrees(found)
+    """Seven racks of 19 m by 1.8 m, 2.1 m apart, in walls of three or four pixels."""
+    length = 25.36
+
+    def racks(along: zoo.Points, across: zoo.Points) -> Mask:
+        return (along > 3.16) & (along < length - 3.16) & (across % 3.9 > 2.12)
+
+    assert_square(degrees, racks, 46.8, length=length, depth=29.42, wall=wall)
 
 
 @pytest.mark.parametrize("turn", [16.0, 35.0, 50.0])

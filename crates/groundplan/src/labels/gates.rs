@@ -50,8 +50,11 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let mut as_bays: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, &seen)).collect();
     let through = Through::new(views, seen);
     let in_each_row = through.in_each_row();
-    let (as_a_bay, at_walls): (Vec<_>, Vec<_>) = through.at_walls(strips, &placed).into_iter().partition(|(_, is)| *is);
-    gates.extend(at_walls.into_iter().map(|(gate, _)| gate));
+    let mut as_a_bay = Vec::new();
+    for (gate, is_as_a_bay) in through.at_walls(strips, &placed) {
+        let found = if is_as_a_bay { &mut as_a_bay } else { &mut gates };
+        found.push(gate);
+    }
     let between_racks = through.between_racks();
     let mut known = in_line(gates.clone());
     let first = known.len();
@@ -59,10 +62,12 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let places = LazyCell::new(|| Place::of_each(views, &known));
     let staggered = LazyCell::new(|| Widths::of_staggered(views, &known, &places));
     // What passes the ends is as wide as the hall leaves: if that is a bay's width it tells no others, nor that any is a way.
+    // Without posts nothing is as wide as bays, and the places need not be laid out.
     let is_racked = views.iter().any(|view| view.pitch.is_some());
     let tells = |n: &usize| !is_racked || !passing::is_past_ends_as_bays(&known, &places, *n);
     let telling = (first..known.len()).filter(tells).map(|n| &known[n]);
     let mut sure = Widths::of(views, telling.chain(&gates));
+    // Where a direction has no ways at all nothing speaks against one.
     let is_any_known = |direction: usize| known.iter().any(|way| way.direction == direction);
     let within = LazyCell::new(|| passing::are_within(views, &places));
     let through = through.find(strips, &mut sure, |direction| within[direction]);
@@ -86,7 +91,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     gates.extend(as_wide.map(|(gate, ..)| gate));
     gates.retain(|gate| !through.iter().any(|way| is_in(gate, way)));
     gates.extend(through);
-    gates.extend(as_a_bay.into_iter().map(|(gate, _)| gate).chain(thin::gates(views, strips)));
+    gates.extend(as_a_bay.into_iter().chain(thin::gates(views, strips)));
     let ways = in_line(gates);
     as_bays.extend(as_wide_as_others(views, strips, &ways, in_each_row));
     as_bays.retain(|gate| !ways.iter().any(|way| is_in(gate, way)));

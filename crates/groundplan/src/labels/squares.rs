@@ -157,14 +157,15 @@ impl<'a> SquaredRows<'a> {
 /// the room of others.
 pub fn sums(
     bands: &[Arc<Band>],
-    [width, samples]: [usize; 2],
+    width: usize,
+    samples: u16,
     what: &[What],
     rows: Range<usize>,
     room: Summed,
 ) -> Summed {
     let across = width.div_ceil(SIDE);
     let width = across * SIDE;
-    Summed::of_rows(width, samples as u16, rows.clone(), what, room, |what, sums| {
+    Summed::of_rows(width, samples, rows.clone(), what, room, |what, sums| {
         sums[..width].fill(0);
         for n in rows.start / SIDE..rows.end.div_ceil(SIDE) {
             let band = &bands[n / BAND];

@@ -148,6 +148,10 @@ impl Difference<'_> {
     }
 }
 
+/// How often a sum is as large as one that is asked for.
+const SELDOM: bool = true;
+const OFTEN: bool = false;
+
 /// Some rows of them.
 pub struct SummedRows<'a> {
     /// Mostly the first is all.
@@ -176,7 +180,7 @@ impl SummedRows<'_> {
         let beyond = |columns: &Range<usize>| self.beyond(least) && !columns.is_empty();
         let within = || {
             seen.clone().step_by(WORD).find_map(|from| {
-                let word = self.word::<true>(from..seen.end.min(from + WORD), least);
+                let word = self.word::<SELDOM>(from..seen.end.min(from + WORD), least);
                 (word != 0).then(|| from + word.trailing_zeros() as usize)
             })
         };
@@ -192,7 +196,7 @@ impl SummedRows<'_> {
             let mut end = seen.end;
             while end > seen.start {
                 let from = seen.start.max(end.saturating_sub(WORD));
-                let word = self.word::<true>(from..end, least);
+                let word = self.word::<SELDOM>(from..end, least);
                 if word != 0 {
                     return Some(from + word.ilog2() as usize);
                 }
@@ -214,7 +218,7 @@ impl SummedRows<'_> {
             }
         }
         for from in seen.clone().step_by(WORD) {
-            reached.add(place(from), self.word::<false>(from..seen.end.min(from + WORD), least));
+            reached.add(place(from), self.word::<OFTEN>(from..seen.end.min(from + WORD), least));
         }
         reached
     }
@@ -236,16 +240,15 @@ impl SummedRows<'_> {
         all
     }
 
-    /// Which of up to a word of columns of the part seen have a sum as large as that.
+    /// Which of up to a word of columns of the part seen have a sum as large as that; where mostly none has, that is asked first.
     #[inline]
-    fn word<const IS_ONE: bool>(&self, seen: Range<usize>, least: u32) -> u64 {
+    fn word<const IS_SELDOM: bool>(&self, seen: Range<usize>, least: u32) -> u64 {
         let column = seen.start - self.columns.start;
         let least = least.saturating_sub(self.besides.into());
         let word = if self.more.is_empty() {
             let Ok(least) = u8::try_from(least) else { return 0 };
             let sums = self.first.word(column);
-            // Where no more than one is looked for, mostly there is none.
-            if IS_ONE && sums.iter().copied().fold(0, u8::max) < least {
+            if IS_SELDOM && sums.iter().copied().fold(0, u8::max) < least {
                 return 0;
             }
             word_where(sums.iter().map(|sum| *sum >= least))

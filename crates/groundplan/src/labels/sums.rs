@@ -139,7 +139,7 @@ impl Cells {
     /// Squares with the sums of some rows, of what will be asked of them; they take the room of others.
     pub fn near(&self, what: &[What], rows: Range<usize>, room: Summed) -> Option<Self> {
         let &Self::Squared { width, samples, ref bands, .. } = self else { return None };
-        let near = squares::sums(bands, [width, samples.into()], what, rows, room);
+        let near = squares::sums(bands, width, samples, what, rows, room);
         Some(Self::Squared { width, samples, bands: Arc::clone(bands), near })
     }
 

@@ -178,11 +178,10 @@ impl<'a> Through<'a> {
             self.rows[m].ways.iter().filter(|other| are_alike(width(**other), width(way))).count()
         };
         let is_told = |n: usize, gate: &Strip, way: [f64; 2]| {
-            let beside = self.beside(n, gate.middle());
-            width(way) >= family::LED_TO * self.rows[n].widest && beside.len() > 1 && {
-                let own = alike(n, way);
-                beside.into_iter().all(|m| alike(m, way) == own)
-            }
+            let (own, beside) = (alike(n, way), self.beside(n, gate.middle()));
+            width(way) >= family::LED_TO * self.rows[n].widest
+                && beside.len() > 1
+                && beside.into_iter().all(|m| alike(m, way) == own)
         };
         let gates = self.rows.iter().enumerate().flat_map(|(n, seen)| {
             let ways = seen.ways.iter().filter(|way| seen.columns.is_as_bays(**way));
