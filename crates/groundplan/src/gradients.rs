@@ -149,10 +149,11 @@ fn edge_pixels(grid: &Grid, band: Range<usize>, among: &Range<usize>) -> Vec<Vec
     // The map's border is no edge: what lies beyond it is not seen.
     let (top, last) = (grid.frame.height - 1, wider.len() - 1);
     let mut rows = [words(band.start.saturating_sub(1)), words(band.start), Vec::new()];
+    let mut columns = Vec::new();
     band.map(|y| {
         rows[2] = words((y + 1).min(top));
         let [below, own, above] = &rows;
-        let mut columns = Vec::new();
+        columns.clear();
         for (n, &word) in own.iter().enumerate().filter(|(_, word)| **word != 0) {
             let left = word << 1 | if n == 0 { word & 1 } else { own[n - 1] >> (WORD - 1) };
             let next =
@@ -165,7 +166,7 @@ fn edge_pixels(grid: &Grid, band: Range<usize>, among: &Range<usize>) -> Vec<Vec
         }
         columns.retain(|&x| among.contains(&(x as usize)));
         rows.rotate_left(1);
-        columns
+        columns.clone()
     })
     .collect()
 }
@@ -242,8 +243,10 @@ impl Bits {
         let lowest = y - self.first - below;
         let place = x - self.left + 8 * MARGIN - self.radius;
         let (byte, shift) = (place / 8, place % 8);
+        if self.radius < 8 {
+            return self.few_sums(lowest * self.stride + byte, shift, &self.masks[self.radius - below..]);
+        }
         let rows = self.bytes.chunks_exact(self.stride).skip(lowest);
-        let narrow = self.radius < 8;
         let (mut sums, mut by_row, mut by_square) = (0u64, [0u64; 2], 0u64);
         for (row, (bytes, mask)) in rows.zip(&self.masks[self.radius - below..]).enumerate() {
             let word = |from: usize| {
@@ -251,11 +254,7 @@ impl Bits {
                 u64::from_le_bytes(bytes) >> shift
             };
             let near = word(byte) & mask[0];
-            let mut found = if narrow {
-                MOMENTS[0][near as usize & 255] + MOMENTS[1][near as usize >> 8 & 255]
-            } else {
-                moments(near, &MOMENTS[..TAKEN])
-            };
+            let mut found = moments(near, &MOMENTS[..TAKEN]);
             if mask[1] != 0 {
                 found += moments(word(byte + TAKEN) & mask[1], &MOMENTS[TAKEN..]);
             }
@@ -266,6 +265,26 @@ impl Bits {
             by_square += count * row * row;
         }
         [sums & 0xffff, sums >> 16 & 0xff_ffff, by_row[0], sums >> 40, by_row[1], by_square].map(|sum| sum as i64)
+    }
+
+    /// The same of a window that is two bytes wide, whose lowest row begins in a byte: what its rows are times their numbers
+    /// fits into the same bits. From the highest row down each adds all above it, and so multiplies nothing.
+    fn few_sums(&self, first: usize, shift: usize, masks: &[[u64; 2]]) -> [i64; 6] {
+        let count = masks.len().min((self.bytes.len() - first).div_ceil(self.stride));
+        let (mut sums, mut by_row, mut by_pair) = (0u64, 0u64, 0u64);
+        let mut from = first + count * self.stride;
+        for mask in masks[..count].iter().rev() {
+            by_row += sums;
+            by_pair += by_row;
+            from -= self.stride;
+            let bytes: [u8; 4] = self.bytes[from..from + 4].try_into().unwrap_or_default();
+            let near = (u32::from_le_bytes(bytes) >> shift & mask[0] as u32) as usize;
+            sums += MOMENTS[0][near & 255] + MOMENTS[1][near >> 8 & 255];
+        }
+        let [count, count_by_row, count_by_pair] = [sums, by_row, by_pair].map(|sum| sum & 0xffff);
+        let [x, x_by_row] = [sums, by_row].map(|sum| sum >> 16 & 0xff_ffff);
+        // Pairs of rows up to one are half of its square and half of itself.
+        [count, x, count_by_row, sums >> 40, x_by_row, 2 * count_by_pair - count_by_row].map(|sum| sum as i64)
     }
 }
 
@@ -297,5 +316,36 @@ fn row_gradients(edges: &Edges, bits: &Bits, y: usize, among: &Range<usize>, out
         out.pixels.push([column, y as u32]);
         out.angles.push(undirected(0.5 * libm::atan2((2 * xy) as f64, (xx - yy) as f64)) as f32);
         out.magnitudes.push(rounded(magnitude * 255.0) as u8);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_holds_what_lies_in_it() {
+        let (width, height) = (90u32, 80usize);
+        let is_edge = |x: &u32, y: usize| (x * x + 7 * y as u32 * y as u32 + 3 * x * y as u32) % 11 < 5;
+        let rows = (0..height).map(|y| (0..width).filter(|x| is_edge(x, y)).collect()).collect();
+        let edges = Edges { first: 0, rows };
+        for radius in [4, 7, 8, 20, 32] {
+            let bits = Bits::new(&edges, &(0..height), &(0..width as usize), radius);
+            for [x, y] in [[0usize, 0], [45, 3], [89, 40], [40, 41], [50, 79], [3, 60]] {
+                let mut expected = [0; 6];
+                // Counted from the window's left column, and from its lowest row that is there.
+                let (left, lowest) = (x as i64 - radius as i64, y.saturating_sub(radius) as i64);
+                for (row, columns) in edges.rows.iter().enumerate() {
+                    for &column in columns {
+                        let [dx, dy] = [i64::from(column) - x as i64, row as i64 - y as i64];
+                        if dx * dx + dy * dy <= (radius * radius) as i64 {
+                            let [x, y] = [i64::from(column) - left, row as i64 - lowest];
+                            expected.iter_mut().zip([1, x, y, x * x, x * y, y * y]).for_each(|(sum, own)| *sum += own);
+                        }
+                    }
+                }
+                assert_eq!(bits.sums(x, y), expected, "{radius} {x} {y}");
+            }
+        }
     }
 }
