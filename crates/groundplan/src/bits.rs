@@ -23,6 +23,14 @@ impl Bits {
         Self(words)
     }
 
+    /// So many pixels, as they are in words from the first on.
+    pub fn of_words(pixels: usize, all: impl Iterator<Item = u64>) -> Self {
+        let mut words = Vec::with_capacity(pixels / WORD + 2);
+        words.extend(all);
+        words.resize(pixels / WORD + 2, 0);
+        Self(words)
+    }
+
     pub fn get(&self, pixel: usize) -> bool {
         self.0[pixel / WORD] >> (pixel % WORD) & 1 == 1
     }

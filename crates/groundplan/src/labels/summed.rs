@@ -209,8 +209,13 @@ impl SummedRows<'_> {
 
     /// Which of some columns have a sum as large as that.
     pub fn reached(&self, columns: &Range<usize>, least: u32) -> Bits {
-        let mut reached = Bits::new(columns.len());
         let [before, seen, after] = self.split(columns);
+        let words = |from: usize| self.word::<OFTEN>(from..seen.end.min(from + WORD), least);
+        // Mostly all of them were seen.
+        if seen.len() == columns.len() {
+            return Bits::of_words(columns.len(), seen.clone().step_by(WORD).map(words));
+        }
+        let mut reached = Bits::new(columns.len());
         let place = |column: usize| column - columns.start;
         if self.beyond(least) {
             for beside in [before, after] {
@@ -218,7 +223,7 @@ impl SummedRows<'_> {
             }
         }
         for from in seen.clone().step_by(WORD) {
-            reached.add(place(from), self.word::<OFTEN>(from..seen.end.min(from + WORD), least));
+            reached.add(place(from), words(from));
         }
         reached
     }
