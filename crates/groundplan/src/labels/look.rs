@@ -22,6 +22,8 @@ pub struct Look<'a> {
     samples: [u8; 256],
     across: usize,
     reaches: Vec<u8>,
+    /// How many tiles are alike from each on, to the right, upwards, to the left and downwards.
+    ahead: [Vec<u8>; 4],
     /// Corners of all that was seen of the map.
     seen: Vec<[f64; 2]>,
 }
@@ -38,6 +40,7 @@ impl<'a> Look<'a> {
             }),
             across: tiles.width,
             reaches: tiles.reaches(),
+            ahead: tiles.ahead(),
             seen: tiles.seen(),
         }
     }
@@ -90,8 +93,8 @@ impl<'a> Look<'a> {
             if is_inside {
                 let place = after(starts[0], step, n * PER);
                 let [x, y] = place.map(|p| (p >> BITS) as usize);
-                let reach = self.reaches[y / SIDE * self.across + x / SIDE];
-                let leap = alike.samples(place, reach) / PER;
+                let tile = y / SIDE * self.across + x / SIDE;
+                let leap = alike.samples(place, self.reaches[tile], self.ahead[alike.way][tile]) / PER;
                 if leap > 0 {
                     let end = all.end.min(n + leap);
                     cells[n..end].fill(whole * self.samples[usize::from(self.rows[y][x])]);
@@ -132,7 +135,8 @@ impl<'a> Look<'a> {
         while n < on_map.end {
             let mut place = after(start, step, n);
             let [x, y] = place.map(|p| (p >> BITS) as usize);
-            let leap = alike.samples(place, self.reaches[y / SIDE * self.across + x / SIDE]);
+            let tile = y / SIDE * self.across + x / SIDE;
+            let leap = alike.samples(place, self.reaches[tile], self.ahead[alike.way][tile]);
             if leap > 0 {
                 let end = on_map.end.min(n + leap);
                 if self.stands([x, y]) {
@@ -193,6 +197,8 @@ fn after(start: [i64; 2], step: [i64; 2], samples: usize) -> [i64; 2] {
 /// How far lanes side by side go on over what is all alike.
 struct Alike {
     step: [i64; 2],
+    /// The axis that they run along rather than the other: to the right, upwards, to the left, downwards.
+    way: usize,
     /// Pixels, times this, are samples.
     pace: [f32; 2],
     /// How far the lanes lie beside the first one, pixels: towards the lower end of each axis, and towards the upper.
@@ -206,20 +212,35 @@ impl Alike {
             let off = || starts.iter().map(|start| start[axis] - starts[0][axis]);
             [-off().min().unwrap_or(0), off().max().unwrap_or(0)].map(pixels)
         });
-        Self { step, pace: step.map(|s| 1.0 / pixels(s).abs()), beside }
+        let axis = usize::from(step[1].abs() > step[0].abs());
+        let way = axis + if step[axis] < 0 { 2 } else { 0 };
+        Self { step, way, pace: step.map(|s| 1.0 / pixels(s).abs()), beside }
     }
 
-    /// Samples from a place of the first lane on, over tiles that are alike so far around the one that it is in.
-    fn samples(&self, place: [i64; 2], reach: u8) -> usize {
+    /// Samples from a place of the first lane on, over tiles that are alike so far around the one that it is in, and so
+    /// many ahead.
+    fn samples(&self, place: [i64; 2], reach: u8, ahead: u8) -> usize {
         if reach == 0 {
             return 0;
         }
         let beyond = ((usize::from(reach) - 1) * SIDE) as f32;
+        let around = self.within(place, [[beyond; 2]; 2]);
+        if ahead < reach {
+            return around;
+        }
+        let mut beyond = [[0.0; 2]; 2];
+        beyond[self.way % 2][usize::from(self.way < 2)] = (usize::from(ahead) * SIDE) as f32;
+        around.max(self.within(place, beyond))
+    }
+
+    /// Samples from a place of the first lane on within its tile and so far beyond, along either axis to both sides.
+    fn within(&self, place: [i64; 2], beyond: [[f32; 2]; 2]) -> usize {
         let mut least = f32::MAX;
         for axis in [0, 1] {
             let in_tile = (place[axis] & (((SIDE as i64) << BITS) - 1)) as f32 / (1i64 << BITS) as f32;
             let [low, high] = self.beside[axis];
-            let (below, above) = (in_tile + beyond - low, SIDE as f32 - in_tile + beyond - high);
+            let [before, after] = beyond[axis];
+            let (below, above) = (in_tile + before - low, SIDE as f32 - in_tile + after - high);
             // A little less, for what floats round.
             if below.min(above) < SLACK {
                 return 0;
