@@ -129,16 +129,16 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads
             let mut sums: Vec<Packed> = vec![0; edges.len()];
             for y in band {
                 let row = grid.row(y);
-                let words = row.chunks_exact(WORD);
                 let mut sum: Packed = 0;
-                for (before, word) in left.iter_mut().zip(words) {
+                // Most words are as the one before them.
+                let (mut last, mut of_last) = ([0; WORD], packed[0] << WORD.ilog2());
+                for (before, word) in left.iter_mut().zip(row.chunks_exact(WORD)) {
                     *before = sum;
-                    // Eight pixels alike are the most of a map.
-                    if *word == [word[0]; WORD] {
-                        sum += packed[usize::from(word[0])] << WORD.ilog2();
-                    } else {
-                        sum += word.iter().map(|&value| packed[usize::from(value)]).sum::<Packed>();
+                    if *word != last {
+                        last.copy_from_slice(word);
+                        of_last = word.iter().map(|&value| packed[usize::from(value)]).sum();
                     }
+                    sum += of_last;
                 }
                 left[width / WORD] = sum;
                 for walk in walks.iter_mut().filter(|walk| walk.rows.contains(&y)) {
