@@ -128,8 +128,9 @@ impl<'a> Part<'a> {
             let around = self.blocks.around(block, &basins);
             // Mostly all are of one.
             let most = around.into_iter().fold(0, u32::max);
-            let others: u32 = around.iter().map(|&basin| u32::from(basin != 0 && basin != most)).sum();
-            if others == 0 && most != 0 {
+            // One less, so that none is the greatest.
+            let least = around.into_iter().map(|basin| basin.wrapping_sub(1)).fold(u32::MAX, u32::min);
+            if most != 0 && least == most - 1 {
                 basins[block] = sets.of(most);
                 continue;
             }
@@ -223,19 +224,25 @@ impl<'a> Part<'a> {
                 }
             }
         }
-        touched.sort_unstable();
-        let &(squared, ax, ay) = touched.first()?;
+        let &(squared, ax, ay) = touched.iter().min()?;
         let nearest = (squared as f64).sqrt();
-        let mut best: Option<(f64, [f64; 2])> = None;
+        // What costs least, and of several the nearest.
+        let mut best: Option<(f64, (i64, i64, i64))> = None;
         for &(squared, x, y) in &touched {
+            // Not even on the other side.
+            let product = (ax - cx) * (x - cx) + (ay - cy) * (y - cy);
+            if product >= 0 {
+                continue;
+            }
             let distance = (squared as f64).sqrt();
-            let cosine = ((ax - cx) * (x - cx) + (ay - cy) * (y - cy)) as f64 / (nearest * distance).max(1e-9);
+            let cosine = product as f64 / (nearest * distance).max(1e-9);
             let cost = cosine + 0.3 * (distance - nearest) / nearest.max(1.0);
-            if cosine < OPPOSITE && best.is_none_or(|(least, _)| cost < least) {
-                best = Some((cost, [x as f64, y as f64]));
+            if cosine < OPPOSITE && best.is_none_or(|best| (cost, (squared, x, y)) < best) {
+                best = Some((cost, (squared, x, y)));
             }
         }
-        let (p, q) = ([ax as f64, ay as f64], best?.1);
+        let (_, (_, x, y)) = best?;
+        let (p, q) = ([ax as f64, ay as f64], [x as f64, y as f64]);
         let [ux, uy] = Bar { ends: [p, q] }.heading();
         Some(Bar { ends: [[p[0] + ux, p[1] + uy], [q[0] - ux, q[1] - uy]] })
     }
