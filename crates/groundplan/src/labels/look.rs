@@ -12,6 +12,8 @@ pub const OCCUPIED: u8 = 16 + BLOCKED;
 const BITS: u32 = 32;
 /// Lanes that are looked along side by side, at most.
 pub const LANES: usize = 3;
+/// Of more tiles than this, 128 megapixels, it is not kept how many are alike ahead.
+const MANY: usize = 1 << 21;
 /// More than what floats round, pixels or samples.
 const SLACK: f32 = 0.01;
 
@@ -22,7 +24,7 @@ pub struct Look<'a> {
     samples: [u8; 256],
     across: usize,
     reaches: Vec<u8>,
-    /// How many tiles are alike from each on, to the right, upwards, to the left and downwards.
+    /// How many tiles are alike from each on, to the right, upwards, to the left and downwards; of large maps it is not kept.
     ahead: [Vec<u8>; 4],
     /// Corners of all that was seen of the map.
     seen: Vec<[f64; 2]>,
@@ -40,9 +42,14 @@ impl<'a> Look<'a> {
             }),
             across: tiles.width,
             reaches: tiles.reaches(),
-            ahead: tiles.ahead(),
+            ahead: if tiles.states.len() <= MANY { tiles.ahead() } else { Default::default() },
             seen: tiles.seen(),
         }
+    }
+
+    /// How many tiles ahead of one are known to be like it.
+    fn ahead(&self, way: usize, tile: usize) -> u8 {
+        self.ahead[way].get(tile).copied().unwrap_or(0)
     }
 
     /// Points, in pixels of the grid, that have all between them that was seen of the map; none where nothing was.
@@ -94,7 +101,7 @@ impl<'a> Look<'a> {
                 let place = after(starts[0], step, n * PER);
                 let [x, y] = place.map(|p| (p >> BITS) as usize);
                 let tile = y / SIDE * self.across + x / SIDE;
-                let leap = alike.samples(place, self.reaches[tile], self.ahead[alike.way][tile]) / PER;
+                let leap = alike.samples(place, self.reaches[tile], self.ahead(alike.way, tile)) / PER;
                 if leap > 0 {
                     let end = all.end.min(n + leap);
                     cells[n..end].fill(whole * self.samples[usize::from(self.rows[y][x])]);
@@ -136,7 +143,7 @@ impl<'a> Look<'a> {
             let mut place = after(start, step, n);
             let [x, y] = place.map(|p| (p >> BITS) as usize);
             let tile = y / SIDE * self.across + x / SIDE;
-            let leap = alike.samples(place, self.reaches[tile], self.ahead[alike.way][tile]);
+            let leap = alike.samples(place, self.reaches[tile], self.ahead(alike.way, tile));
             if leap > 0 {
                 let end = on_map.end.min(n + leap);
                 if self.stands([x, y]) {
