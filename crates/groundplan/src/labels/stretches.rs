@@ -73,11 +73,19 @@ pub type Found = (Strip, Held, bool);
 pub struct Candidate<'a> {
     view: &'a Turned,
     across: [f64; 2],
-    /// Where its sides may stand, and the least cells that a column has there.
-    beyond: [[f64; 2]; 2],
-    deep: [u32; 2],
     /// It may be a row of empty bays.
     bay: bool,
+    asked: Asked<'a>,
+}
+
+/// What is asked of the columns of one strip, or of what several have in common.
+struct Asked<'a> {
+    view: &'a Turned,
+    /// How wide each is, metres.
+    width: f64,
+    /// Where the sides may stand, and the least cells that a column has there.
+    beyond: [[f64; 2]; 2],
+    deep: [u32; 2],
     blocked: Shares<'a>,
     /// Of blocked samples, the least for which nothing gets through.
     closed: u32,
@@ -105,14 +113,13 @@ struct Columns {
     scores: Vec<i64>,
 }
 
-impl<'a> Candidate<'a> {
-    /// What is no wider than `bay`, metres, may be a row of them.
-    pub fn new(view: &'a Turned, across: [f64; 2], bay: f64) -> Self {
+impl<'a> Asked<'a> {
+    fn new(view: &'a Turned, across: [f64; 2]) -> Self {
         let blocked = view.blocked_in(across[0], across[1]);
         let closed = blocked.least(|share| share > IMPASSABLE);
         let beyond = beyond(across);
         let deep = beyond.map(|[low, high]| view.cells_in(low, high));
-        Self { view, across, beyond, deep, bay: may_be_bay(across, bay), closed, blocked }
+        Self { view, width: across[1] - across[0], beyond, deep, blocked, closed }
     }
 
     /// Several of one width, the lowest first: what they have in common, between sides that may stand wherever one's may.
@@ -128,20 +135,7 @@ impl<'a> Candidate<'a> {
         let deep = [least(0)?, least(1)?];
         let beyond = [[sides[0][0][0], sides[1][0][1]], [sides[0][1][0], sides[1][1][1]]];
         let width = all.iter().map(|own| own[1] - own[0]).fold(f64::INFINITY, f64::min);
-        Some(Self { view, across: [0.0, width], beyond, deep, bay: false, closed, blocked })
-    }
-
-    /// False when none of several strips of one width, the lowest first, is a way.
-    pub fn may_be(view: &'a Turned, all: &[[f64; 2]], by: &[Held]) -> bool {
-        let Some(common) = Self::common(view, all) else { return false };
-        let least = by.iter().map(|&by| common.least(by)).min().unwrap_or(1);
-        let stretches = common.stretches(0..view.size[0], least, &[]);
-        let holds = |by: Held| {
-            let least = common.least(by);
-            let mut long = stretches.iter().filter(|stretch| stretch.columns.len() >= least);
-            long.any(|stretch| common.sides(stretch, by, least).is_some())
-        };
-        by.iter().any(|&by| holds(by))
+        Some(Self { view, width, beyond, deep, blocked, closed })
     }
 
     /// In which columns of a stretch each side holds, and both do, where so many of them may be a way.
@@ -204,35 +198,6 @@ impl<'a> Candidate<'a> {
         held
     }
 
-    /// The columns around a way along it up to where it is closed: beyond nothing bears on what lies there.
-    pub fn around(&self, way: &Strip) -> Range<usize> {
-        let [first, last] = way.along.map(|u| self.view.column(u));
-        let from = self.blocked.last(0..first, self.closed).map_or(0, |c| c + 1);
-        from..self.blocked.first(last..self.view.size[0], self.closed).unwrap_or(self.view.size[0])
-    }
-
-    /// Columns of the shortest way along it.
-    fn least(&self, by: Held) -> usize {
-        ((by.shortest(self.across[1] - self.across[0]) / self.view.cell) as usize).max(1)
-    }
-
-    /// The ways along it, of what may hold their sides.
-    pub fn ways(&self, by: &[Held]) -> Vec<Found> {
-        // Where a short way fits, a long one may.
-        let least = by.iter().map(|&by| self.least(by)).min().unwrap_or(1);
-        let stretches = self.stretches(0..self.view.size[0], least, &[]);
-        let found = |by: Held| self.ways_in(by, &stretches).into_iter().map(move |(way, is_cut)| (way, by, is_cut));
-        by.iter().copied().flat_map(found).collect()
-    }
-
-    /// The ways along it that rivals leave, among some columns.
-    pub fn ways_left(&self, by: Held, within: Range<usize>, rivals: &[&Strip]) -> Vec<(Strip, bool)> {
-        let view = self.view;
-        let rivals: Vec<Range<usize>> =
-            rivals.iter().map(|rival| view.column(rival.along[0])..view.column(rival.along[1]) + 1).collect();
-        self.ways_in(by, &self.stretches(within, self.least(by), &rivals))
-    }
-
     /// The stretches of so many columns at least that are not closed, among some columns.
     fn stretches(&self, within: Range<usize>, least: usize, rivals: &[Range<usize>]) -> Vec<Stretch> {
         let open = self.blocked.open(within, least, self.closed, rivals);
@@ -244,14 +209,63 @@ impl<'a> Candidate<'a> {
         open.into_iter().map(stretch).collect()
     }
 
+    /// Columns of the shortest way along it.
+    fn least(&self, by: Held) -> usize {
+        ((by.shortest(self.width) / self.view.cell) as usize).max(1)
+    }
+}
+
+impl<'a> Candidate<'a> {
+    /// What is no wider than `bay`, metres, may be a row of them.
+    pub fn new(view: &'a Turned, across: [f64; 2], bay: f64) -> Self {
+        Self { view, across, bay: may_be_bay(across, bay), asked: Asked::new(view, across) }
+    }
+
+    /// False when none of several strips of one width, the lowest first, is a way.
+    pub fn may_be(view: &'a Turned, all: &[[f64; 2]], by: &[Held]) -> bool {
+        let Some(common) = Asked::common(view, all) else { return false };
+        let least = by.iter().map(|&by| common.least(by)).min().unwrap_or(1);
+        let stretches = common.stretches(0..view.size[0], least, &[]);
+        let holds = |by: Held| {
+            let least = common.least(by);
+            let mut long = stretches.iter().filter(|stretch| stretch.columns.len() >= least);
+            long.any(|stretch| common.sides(stretch, by, least).is_some())
+        };
+        by.iter().any(|&by| holds(by))
+    }
+
+    /// The columns around a way along it up to where it is closed: beyond nothing bears on what lies there.
+    pub fn around(&self, way: &Strip) -> Range<usize> {
+        let [first, last] = way.along.map(|u| self.view.column(u));
+        let from = self.asked.blocked.last(0..first, self.asked.closed).map_or(0, |c| c + 1);
+        from..self.asked.blocked.first(last..self.view.size[0], self.asked.closed).unwrap_or(self.view.size[0])
+    }
+
+    /// The ways along it, of what may hold their sides.
+    pub fn ways(&self, by: &[Held]) -> Vec<Found> {
+        // Where a short way fits, a long one may.
+        let least = by.iter().map(|&by| self.asked.least(by)).min().unwrap_or(1);
+        let stretches = self.asked.stretches(0..self.view.size[0], least, &[]);
+        let found = |by: Held| self.ways_in(by, &stretches).into_iter().map(move |(way, is_cut)| (way, by, is_cut));
+        by.iter().copied().flat_map(found).collect()
+    }
+
+    /// The ways along it that rivals leave, among some columns.
+    pub fn ways_left(&self, by: Held, within: Range<usize>, rivals: &[&Strip]) -> Vec<(Strip, bool)> {
+        let view = self.view;
+        let rivals: Vec<Range<usize>> =
+            rivals.iter().map(|rival| view.column(rival.along[0])..view.column(rival.along[1]) + 1).collect();
+        self.ways_in(by, &self.asked.stretches(within, self.asked.least(by), &rivals))
+    }
+
     /// The ways along it in stretches that are not closed, and which of them walls at their ends have cut.
     fn ways_in(&self, by: Held, stretches: &[Stretch]) -> Vec<(Strip, bool)> {
         let view = self.view;
         let width = self.across[1] - self.across[0];
-        let least = self.least(by);
+        let least = self.asked.least(by);
         let mut ways = Vec::new();
         for stretch in stretches.iter().filter(|stretch| stretch.columns.len() >= least) {
-            let Some(columns) = self.columns(stretch, by, least) else { continue };
+            let Some(columns) = self.asked.columns(stretch, by, least) else { continue };
             let pieces = best_pieces(&columns.scores).into_iter().filter(|(from, to)| to - from >= least);
             for piece in pieces.map(|(from, to)| from..to).filter(|piece| self.is_way(stretch, &columns, by, piece)) {
                 let Some(left) = self.between_walls(stretch, &columns, by, piece.clone()) else { continue };
@@ -295,7 +309,7 @@ impl<'a> Candidate<'a> {
         let from = walls.runs(0..inner.start, true).last().map_or(0, |run| run.end);
         let to = walls.runs(inner.end..range.len(), true).next().map_or(range.len(), |run| run.start);
         let left = range.start + from..range.start + to;
-        let is_way = left.len() >= self.least(by)
+        let is_way = left.len() >= self.asked.least(by)
             && self.is_way(stretch, columns, by, &left)
             && !barriers::among(view, self.across, first + left.start..first + left.end).any();
         is_way.then_some(left)
@@ -365,4 +379,52 @@ pub fn depth(across: [f64; 2]) -> f64 {
 pub fn beyond(across: [f64; 2]) -> [[f64; 2]; 2] {
     let depth = depth(across);
     [[across[0] - depth, across[0]], [across[1], across[1] + depth]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Scene;
+    use super::super::look::Look;
+    use super::super::recall::Recall;
+    use super::*;
+    use crate::directions::Directions;
+    use crate::grid::{Frame, Grid, Table};
+    use crate::tiles::Tiles;
+
+    /// An aisle of 2 m between goods that stand back from it by up to so many pixels, with gaps between them.
+    fn aisle(back: usize) -> Vec<u8> {
+        let mut pixels = vec![254; 400 * 200];
+        for (n, from) in (0..400).step_by(16).enumerate() {
+            let by = [3, 7, 1, 5, 2, 6].map(|k| k * n % (back + 1));
+            for (low, high) in [(40, 80 - by[0]), (120 + by[1], 160)] {
+                let length = 16 - by[2] % 4;
+                (low..high).for_each(|y| pixels[y * 400 + from..][..length].fill(0));
+            }
+        }
+        pixels
+    }
+
+    #[test]
+    fn what_strips_have_in_common_rules_out_no_way_along_one_of_them() {
+        let (table, recall) = (Table::trinary(), Recall::default());
+        let directions = Directions { angles: vec![0.0], ..Directions::default() };
+        for back in 0..12 {
+            let pixels = aisle(back);
+            let grid = Grid::new(&pixels, false, &table, Frame::new(400, 200, 0.05, [0.0; 3]));
+            let scene = Scene { grid: &grid, directions: &directions, threads: 1, recall: &recall };
+            let mut view = Turned::new(&scene, 0, &[]);
+            view.see(&scene, &Look::new(&grid, &Tiles::new(&grid, 1)), None);
+            let mut ways = 0;
+            for (width, n) in [1.2, 1.6, 2.0].into_iter().flat_map(|width| (0..80).map(move |n| (width, n))) {
+                let low = 2.0 + 0.05 * f64::from(n);
+                let pair = [low, low + 0.1].map(|low| [low, low + width]);
+                let is_way = |across: &[f64; 2]| !Candidate::new(&view, *across, 0.0).ways(&[Held::Deep]).is_empty();
+                if pair.iter().any(is_way) {
+                    ways += 1;
+                    assert!(Candidate::may_be(&view, &pair, &[Held::Deep]), "{width} m wide from {low} m, {back} back");
+                }
+            }
+            assert!(ways > 0, "{back} back");
+        }
+    }
 }
