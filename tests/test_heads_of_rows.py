@@ -44,6 +44,30 @@ def test_aisles_meet_the_way_along_the_wall_before_rows_of_any_length(early: tup
     assert all(abs(label["at"][0] - 39.5) < 0.3 for label in survey.of_kind("junction") if label["type"] != "end")
 
 
+@pytest.mark.parametrize(
+    "early", [(-1.0, 4.0, 4.0, -1.0, 4.0), (-1.1, 1.6, 1.6, -1.1, 1.6), (-1.1, 3.0, 3.0, -1.1, 3.0)]
+)
+def test_the_way_along_the_wall_may_be_narrower_than_the_aisles_that_lead_to_it(early: tuple[float, ...]) -> None:
+    survey = hall(early)
+    kinds = sorted(label["type"] for label in survey.of_kind("junction") if label["type"] != "end")
+    assert kinds == ["L"] * 2 + ["T"] * 4
+
+
+@pytest.mark.parametrize("gap", [2.4, 3.0, 4.0])
+def test_an_aisle_that_an_office_closes_leads_round_the_head_of_the_row_beside_it(gap: float) -> None:
+    """Two rows 2 m deep and three aisles of 3 m; one row and the aisle beside it end before an office in the corner."""
+    y, x = np.mgrid[-1.0:14.0:RESOLUTION, -1.0:41.0:RESOLUTION] + RESOLUTION / 2
+    picture = np.full(x.shape, 205, dtype=np.uint8)
+    picture[(x > -0.2) & (x < 40.2) & (y > -0.2) & (y < 13.2)] = 0
+    picture[(x > 0) & (x < 40) & (y > 0) & (y < 13)] = 254
+    picture[(x > 29.8) & (y > -0.2) & (y < 5.0)] = 0
+    for low, end in ((3.0, 29.8 - gap), (8.0, 36.5)):
+        picture[(x > 3.5) & (x < end) & (y > low) & (y < low + 2.0)] = 0
+    survey = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION)
+    beside = [label for label in survey.of_kind("junction") if abs(label["at"][0] - (30.8 - gap / 2)) < 0.5]
+    assert sorted(label["type"] for label in beside) == ["L", "T"]
+
+
 @pytest.mark.parametrize("empty", [(0, 1, 3), (0, 1, 2, 3), (1, 2, 3, 4)])
 def test_the_way_along_the_wall_is_known_though_the_last_bays_are_empty(empty: tuple[int, ...]) -> None:
     survey = hall((0.0,) * 5, empty=empty)

@@ -104,6 +104,18 @@ def test_a_gate_in_a_thin_wall_between_two_aisles_is_a_way(wall: float, gate: fl
     assert widths == pytest.approx(sorted([gate, 4.1, 4.1, 4.1, 4.1]), abs=0.2)
 
 
+@pytest.mark.parametrize("wall", [0.2, 0.4, 0.5])
+@pytest.mark.parametrize("way", [2.4, 3.0])
+def test_a_way_that_leads_on_through_a_gate_is_one_though_rows_lie_across_behind_it(way: float, wall: float) -> None:
+    # Wider ones lead through the rows of the one hall alone, and past all rows' ends.
+    low = 16.9 + wall
+    floors: list[Box] = [(0, 0, 40, 16.9), (0, low, 40, low + 12.1), (17.6, 16, 18.4 + way, 18)]
+    below = rows([2.5, 7.3, 12.1], [(3.5, 18), (18 + way, 28), (32.2, 36.5)], depth=2.3)
+    junctions, widths = found(site(floors, [*below, *rows([low + 2.5, low + 7.3], [(3.5, 36.5)], depth=2.3)]))
+    assert junctions == ["L"] * 8 + ["T"] * 10 + ["X"] * 5
+    assert widths == pytest.approx(sorted([way, 3.5, 3.5, 3.5, 3.5, 4.2]), abs=0.25)
+
+
 def test_openings_between_the_pillars_of_two_aisles_are_no_gates() -> None:
     pillars = [(n, 14.2, n + 0.4, 14.4) for n in np.arange(4.0, 37.0, 4.0).tolist()]
     junctions, _ = found(site([(0, 0, 40, 28.6)], [*rows([3, 8.6, 17.4, 23], [(4, 36)], depth=2.6), *pillars]))

@@ -53,8 +53,16 @@ def test_three_arms_that_are_not_square_are_a_y(degrees: tuple[float, float, flo
     assert junction["type"] == "Y" and len(junction["corridors"]) == 3
 
 
-def test_two_arms_in_line_and_one_square_to_them_are_none() -> None:
-    made = three_arms((0.0, 90.0, 180.0))
+@pytest.mark.parametrize("turn", [70.0, 90.0])
+def test_two_arms_in_line_and_one_nearly_square_to_them_are_none(turn: float) -> None:
+    made = three_arms((0.0, turn, 180.0))
     assert [j["type"] for j in made.truth["junctions"]] == ["T"]
     types = [label["type"] for label in groundplan.survey(made.map).of_kind("junction")]
     assert types.count("T") == 1 and "Y" not in types
+
+
+def test_two_arms_in_line_and_one_askew_to_them_are_a_y() -> None:
+    made = three_arms((0.0, 60.0, 180.0))
+    assert [j["type"] for j in made.truth["junctions"]] == ["Y"]
+    types = [label["type"] for label in groundplan.survey(made.map).of_kind("junction")]
+    assert types.count("Y") == 1 and "T" not in types

@@ -21,7 +21,7 @@ _ARM = 2.0
 #: Crossings nearer than this are one, metres.
 _APART = 0.3
 #: Three ways of which two meet at less than this angle are a Y and no T.
-_SQUARE = math.radians(54.5)
+_SQUARE = math.radians(64.5)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 
 use super::Evidence;
 use super::corridors::Strip;
-use super::family;
 use super::gates::square_to;
 use super::known::{Known, Led};
 use super::look::Look;
@@ -22,7 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const SHORT: f64 = 6.0;
 /// The wall is one where aisles side by side meet it this near to each other, metres.
 const IN_LINE: f64 = 0.5;
-/// So many rows side by side end before it, at least.
+/// So many rows side by side end before it, at least, if the aisles beside one all end there.
 const ROWS: usize = 2;
 /// What stands so near to its sides, in widths, does not bar the way.
 const SIDES: f64 = 0.2;
@@ -33,6 +32,8 @@ const BAY: f64 = 1.15;
 /// The longest row and what fills the shortest one differ by so much, metres: where rows end alike and are full up to
 /// there, a line is the way's side.
 const APART: f64 = 0.6;
+/// A way is so many times as wide as the aisles that lead to it.
+const NARROWER: f64 = 0.55;
 /// No more than this share of the way is not free.
 const CLEAR: f64 = 0.1;
 
@@ -124,6 +125,9 @@ impl Heads<'_> {
                 if empty - width >= APART && !are_bays {
                     found.extend(self.way(&chain[from..to], wall, width));
                 }
+            } else if let Some((wall, width, _)) = ends[from].filter(|&(wall, ..)| self.leads_past(&chain[from], wall))
+            {
+                found.extend(self.way(&chain[from..=from], wall, width));
             }
             from = to.max(from + 1);
         }
@@ -146,6 +150,14 @@ impl Heads<'_> {
         }
     }
 
+    /// True when one of two aisles leads on past a wall that closes the other one.
+    fn leads_past(&self, row: &Between, wall: f64) -> bool {
+        let outwards = |place: f64| if self.side == 0 { -place } else { place };
+        row.aisles
+            .into_iter()
+            .any(|n| outwards(self.strips[n].along[self.side]) - outwards(wall) >= self.strips[n].width())
+    }
+
     /// Where what closes an aisle beyond its end begins.
     fn wall(&self, aisle: usize) -> Option<f64> {
         shut::closed(self.view, &self.strips[aisle], self.side, SHORT + self.parameters.labels_max_width)
@@ -164,7 +176,7 @@ impl Heads<'_> {
     /// The way past some rows, if it is free.
     fn way(&self, rows: &[Between], wall: f64, width: f64) -> Option<Led> {
         let aisles = rows.iter().flat_map(|row| row.aisles).map(|n| self.strips[n].width()).fold(0.0, f64::max);
-        if !(family::LED_TO * aisles..=self.parameters.labels_max_width).contains(&width) {
+        if !(NARROWER * aisles..=self.parameters.labels_max_width).contains(&width) {
             return None;
         }
         let (first, last) = (&self.strips[rows.first()?.aisles[0]], &self.strips[rows.last()?.aisles[1]]);

@@ -49,7 +49,7 @@ pub const SAME: f64 = 1.5;
 /// Ways out whose headings differ by less are one, and such that differ by so little from opposite are in line.
 const SAME_WAY_DEG: f64 = 30.0;
 /// Three ways that meet at less than this angle are a Y, degrees.
-const SQUARE_DEG: f64 = 55.0;
+const SQUARE_DEG: f64 = 65.0;
 
 /// For each of so many corridors the junctions that it leads to, in their order.
 pub fn of_each(meetings: &[Meeting], corridors: usize) -> Vec<Vec<usize>> {

@@ -240,7 +240,8 @@ impl<'a> Layout<'a> {
                 walls[*m] || own.iter().any(|&n| is_beside(*m, n)) || own.iter().all(|&n| is_beside(n, *m))
             };
             let beside = |m: usize| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]);
-            let next = || own.iter().flat_map(|&m| beside(m)).filter(|m| !is_wall(m));
+            // Nor do the rows of a hall tell anything of those behind its wall.
+            let next = || own.iter().filter(|&&m| !walls[m]).flat_map(|&m| beside(m)).filter(|m| !is_wall(m));
             let ends_before = |m: &&usize| crosses_at(n, **m).is_some_and(|(s, _)| !crosses(n, s));
             let is_in_line = |&other: &usize| other != n && overlap(strips[n].across, strips[other].across) > 0.0;
             let is_led_on = next().any(|&m| through[m].iter().any(is_in_line));
