@@ -116,6 +116,15 @@ def test_a_way_that_leads_on_through_a_gate_is_one_though_rows_lie_across_behind
     assert widths == pytest.approx(sorted([way, 3.5, 3.5, 3.5, 3.5, 4.2]), abs=0.25)
 
 
+def test_ways_through_single_rows_are_as_wide_as_they_are_whatever_leads_through_the_next_hall() -> None:
+    # One of 3 m leads on through a gate in a wall of 0.4 m; behind that each of two rows has its own way.
+    floors: list[Box] = [(0, 0, 40, 16.9), (0, 17.3, 40, 29.4), (17.6, 16, 21.4, 18)]
+    below = rows([2.5, 7.3, 12.1], [(3.5, 18), (21, 36.5)], depth=2.3)
+    above = [*rows([19.8], [(3.5, 9), (11.2, 36.5)], depth=2.3), *rows([24.6], [(3.5, 27), (29.2, 36.5)], depth=2.3)]
+    _, widths = found(site(floors, [*below, *above]))
+    assert widths == pytest.approx([2.2, 2.2, 3.0, 3.5, 3.5, 3.5, 3.5], abs=0.25)
+
+
 def test_openings_between_the_pillars_of_two_aisles_are_no_gates() -> None:
     pillars = [(n, 14.2, n + 0.4, 14.4) for n in np.arange(4.0, 37.0, 4.0).tolist()]
     junctions, _ = found(site([(0, 0, 40, 28.6)], [*rows([3, 8.6, 17.4, 23], [(4, 36)], depth=2.6), *pillars]))

@@ -17,7 +17,7 @@ const NEAR: f64 = 0.3;
 /// elsewhere, and not as many lead through each. What leads through most of them and lies open in the others is none.
 pub fn is_empty(place: &Place, strips: &[Strip], n: usize) -> bool {
     let own = &place.passing[n];
-    let (Some(&first), width) = (own.rows.first(), strips[n].width()) else { return false };
+    let (Some(first), width) = (place.first_of(own), strips[n].width()) else { return false };
     if !own.is_within {
         return false;
     }

@@ -110,7 +110,7 @@ fn as_wide_as_others(views: &[Turned], strips: &[Strip], ways: &[Strip], some: V
     let stays = |&n: &usize| {
         let width = all[n].width();
         let in_place = |place: &Place| {
-            let Some(&first) = place.passing[n].rows.first() else { return true };
+            let Some(first) = place.first_of(&place.passing[n]) else { return true };
             let rows = place.rows_with(first);
             let whole = Widths::of_whole(place, &all, &rows);
             whole.is_empty()

@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const SHORT: f64 = 6.0;
 /// The wall is one where aisles side by side meet it this near to each other, metres.
 const IN_LINE: f64 = 0.5;
-/// So many rows side by side end before it, at least, if the aisles beside one all end there.
+/// So many rows side by side end before it, at least, or one of whose aisles the one leads on past it.
 const ROWS: usize = 2;
 /// What stands so near to its sides, in widths, does not bar the way.
 const SIDES: f64 = 0.2;
@@ -32,8 +32,10 @@ const BAY: f64 = 1.15;
 /// The longest row and what fills the shortest one differ by so much, metres: where rows end alike and are full up to
 /// there, a line is the way's side.
 const APART: f64 = 0.6;
+/// A wall closes a row where so much of what lies along the wall is not free.
+const CLOSED: f64 = 0.5;
 /// A way is so many times as wide as the aisles that lead to it.
-const NARROWER: f64 = 0.55;
+const LEADING: f64 = 0.55;
 /// No more than this share of the way is not free.
 const CLEAR: f64 = 0.1;
 
@@ -150,9 +152,14 @@ impl Heads<'_> {
         }
     }
 
-    /// True when one of two aisles leads on past a wall that closes the other one.
+    /// True when one of two aisles leads on past a wall that closes the other one and the row between.
     fn leads_past(&self, row: &Between, wall: f64) -> bool {
         let outwards = |place: f64| if self.side == 0 { -place } else { place };
+        let columns = self.view.column(wall - IN_LINE)..self.view.column(wall + IN_LINE);
+        let taken = self.view.some_blocked(columns, row.faces[0], row.faces[1]);
+        if taken.iter().all(|share| *share < CLOSED) {
+            return false;
+        }
         row.aisles
             .into_iter()
             .any(|n| outwards(self.strips[n].along[self.side]) - outwards(wall) >= self.strips[n].width())
@@ -176,7 +183,7 @@ impl Heads<'_> {
     /// The way past some rows, if it is free.
     fn way(&self, rows: &[Between], wall: f64, width: f64) -> Option<Led> {
         let aisles = rows.iter().flat_map(|row| row.aisles).map(|n| self.strips[n].width()).fold(0.0, f64::max);
-        if !(NARROWER * aisles..=self.parameters.labels_max_width).contains(&width) {
+        if !(LEADING * aisles..=self.parameters.labels_max_width).contains(&width) {
             return None;
         }
         let (first, last) = (&self.strips[rows.first()?.aisles[0]], &self.strips[rows.last()?.aisles[1]]);

@@ -58,11 +58,30 @@ impl Place<'_> {
             let (row, between) = &self.rows[row];
             seldom::is_double(row) && between.iter().all(is_as_wide)
         };
-        let Some(&first) = own.rows.first() else { return false };
+        let Some(first) = self.first_of(own) else { return false };
         let rows = self.rows_with(first);
         let rows = || rows.iter().map(|&row| &self.rows[row].0);
         own.is_within && seldom::are_full_elsewhere(self.views[0], rows(), width)
             || own.rows.iter().all(may_be_led_through) && seldom::are_open(self.views[0], rows(), width)
+    }
+
+    /// The first row that something passes through, but for walls between halls.
+    pub fn first_of(&self, own: &Passing) -> Option<usize> {
+        own.rows.iter().copied().find(|&row| !self.walls[row])
+    }
+
+    /// For each row the number of the part of the place that it is of, as `rows_with` has it; a wall is one by itself.
+    pub fn parts(&self) -> Vec<usize> {
+        let mut parts = vec![usize::MAX; self.rows.len()];
+        for row in 0..self.rows.len() {
+            if parts[row] == usize::MAX {
+                let with = if self.walls[row] { BTreeSet::from([row]) } else { self.rows_with(row) };
+                for other in with {
+                    parts[other] = row;
+                }
+            }
+        }
+        parts
     }
 
     /// The rows of the part of the place that a row is of: those that lie one beside another, walls between halls left out.
@@ -81,6 +100,8 @@ impl Place<'_> {
 pub struct Passing {
     /// Which of the rows.
     pub rows: Vec<usize>,
+    /// How many of these are no walls between halls.
+    pub racks: usize,
     /// How long it is without what leads through them, from aisle to aisle, metres.
     pub rest: f64,
     /// Those beside them that it would lead through, were it longer.
@@ -92,9 +113,9 @@ pub struct Passing {
 }
 
 impl Passing {
-    /// True when it leads through several rows, and no more are beside them.
+    /// True when it leads through several rows, walls between halls not counted, and no more are beside them.
     pub fn is_whole(&self) -> bool {
-        self.rows.len() >= 2 && self.next.is_empty()
+        self.racks >= 2 && self.next.is_empty()
     }
 
     /// True when it is the same rows that another passes through, and more.
@@ -240,7 +261,7 @@ impl<'a> Layout<'a> {
                 walls[*m] || own.iter().any(|&n| is_beside(*m, n)) || own.iter().all(|&n| is_beside(n, *m))
             };
             let beside = |m: usize| beside[rows[m].1[1]][0].iter().chain(&beside[rows[m].1[0]][1]);
-            // Nor do the rows of a hall tell anything of those behind its wall.
+            // Nor do the rows of a hall tell where a way leads on behind its wall.
             let next = || own.iter().filter(|&&m| !walls[m]).flat_map(|&m| beside(m)).filter(|m| !is_wall(m));
             let ends_before = |m: &&usize| crosses_at(n, **m).is_some_and(|(s, _)| !crosses(n, s));
             let is_in_line = |&other: &usize| other != n && overlap(strips[n].across, strips[other].across) > 0.0;
@@ -249,8 +270,9 @@ impl<'a> Layout<'a> {
                 let ([from, to], width) = (rows[m].0.along, strips[n].width());
                 crosses_at(n, m).is_some_and(|(_, u)| from + width < u && u < to - width)
             });
+            let racks = own.iter().filter(|&&m| !walls[m]).count();
             let next = next().filter(ends_before).copied().collect();
-            Passing { rows: own.clone(), rest, next, is_led_on, is_within }
+            Passing { rows: own.clone(), racks, rest, next, is_led_on, is_within }
         };
         (crossed.iter().enumerate().map(of_strip).collect(), through)
     }

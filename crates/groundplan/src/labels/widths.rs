@@ -24,7 +24,7 @@ const TAKEN: f64 = 0.2;
 const BEYOND: f64 = 0.6;
 
 /// How wide the ways of a direction are that are no bays, metres.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Widths(Vec<f64>);
 
 impl Widths {
@@ -86,13 +86,22 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let placed = placed(views, strips.iter().map(Strip::place));
+    let none = Widths::default();
     for place in Place::of_each(views, &strips) {
         let Place { views: [view, other], passing, .. } = &place;
-        let whole = |n: &usize| passing[*n].is_whole();
-        let is_told_within = (0..strips.len()).filter(whole).any(|n| passing[n].is_within);
-        let known = Widths((0..strips.len()).filter(whole).map(|n| strips[n].width()).collect());
+        // What leads through all rows of a part of the place tells of that part.
+        let parts = place.parts();
+        let mut told = vec![(Widths::default(), false); parts.len()];
+        for (n, own) in passing.iter().enumerate().filter(|(_, own)| own.is_whole()) {
+            for part in own.rows.iter().map(|&row| parts[row]).collect::<BTreeSet<_>>() {
+                told[part].0.add(strips[n].width());
+                told[part].1 |= own.is_within;
+            }
+        }
         let alone = LazyCell::new(|| Alone::new(&place, &strips));
         for (n, own) in passing.iter().enumerate() {
+            let part = place.first_of(own).or(own.rows.first().copied()).map(|row| parts[row]);
+            let (known, is_told_within) = part.map_or((&none, false), |part| (&told[part].0, told[part].1));
             let is_some = !own.rows.is_empty() && !own.next.is_empty() && own.rest <= REST && !known.is_empty();
             // Where the rows beside it go on to the wall, one that does not is empty there.
             let is_bay = || own.rows.len() == 1 && !own.is_led_on && is_at_wall(other, &strips[n]);
