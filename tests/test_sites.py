@@ -122,7 +122,7 @@ def test_arms_lead_somewhere() -> None:
     assert sorted(str(n.kind) for n in net.nodes) == ["T", "T", "end", "end", "end", "end"]
 
 
-@pytest.mark.parametrize(("angle", "kind"), [(90, "T"), (70, "T"), (60, "Y"), (30, "Y")])
+@pytest.mark.parametrize(("angle", "kind"), [(90, "T"), (70, "T"), (60, "Y"), (50, "Y"), (30, "Y")])
 def test_a_slanted_third_way_makes_a_y(angle: float, kind: str) -> None:
     a = math.radians(angle)
     net = network([Corridor((0, 0), (20, 0), 3), Corridor((10, 0), (10 + 9 * math.cos(a), 9 * math.sin(a)), 3)])

@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const SHORT: f64 = 6.0;
 /// The wall is one where aisles side by side meet it this near to each other, metres.
 const IN_LINE: f64 = 0.5;
-/// So many rows side by side end before it, at least, or one of whose aisles the one leads on past it.
+/// So many rows side by side end before it, at least; of one by itself the wall closes one of its aisles and not the other.
 const ROWS: usize = 2;
 /// What stands so near to its sides, in widths, does not bar the way.
 const SIDES: f64 = 0.2;
@@ -140,10 +140,7 @@ impl Heads<'_> {
     /// closes that one there.
     fn wall_of(&self, aisles: [usize; 2]) -> Option<f64> {
         let [one, two] = aisles.map(|n| self.wall(n));
-        let outwards = |wall: f64| if self.side == 0 { -wall } else { wall };
-        let leads_on = |n: usize, own: Option<f64>, other: f64| {
-            own.is_none_or(|own| outwards(own) - outwards(other) >= self.strips[n].width())
-        };
+        let leads_on = |n: usize, own: Option<f64>, other: f64| own.is_none_or(|own| self.is_past(n, own, other));
         match (one, two) {
             (Some(one), Some(two)) if (one - two).abs() <= IN_LINE => Some(f64::midpoint(one, two)),
             (Some(one), _) if leads_on(aisles[1], two, one) => Some(one),
@@ -154,15 +151,16 @@ impl Heads<'_> {
 
     /// True when one of two aisles leads on past a wall that closes the other one and the row between.
     fn leads_past(&self, row: &Between, wall: f64) -> bool {
-        let outwards = |place: f64| if self.side == 0 { -place } else { place };
         let columns = self.view.column(wall - IN_LINE)..self.view.column(wall + IN_LINE);
         let taken = self.view.some_blocked(columns, row.faces[0], row.faces[1]);
-        if taken.iter().all(|share| *share < CLOSED) {
-            return false;
-        }
-        row.aisles
-            .into_iter()
-            .any(|n| outwards(self.strips[n].along[self.side]) - outwards(wall) >= self.strips[n].width())
+        taken.iter().any(|share| *share >= CLOSED)
+            && row.aisles.into_iter().any(|n| self.is_past(n, self.strips[n].along[self.side], wall))
+    }
+
+    /// True when a place along an aisle is farther outwards than a wall by as much as the aisle is wide.
+    fn is_past(&self, aisle: usize, place: f64, wall: f64) -> bool {
+        let outwards = |place: f64| if self.side == 0 { -place } else { place };
+        outwards(place) - outwards(wall) >= self.strips[aisle].width()
     }
 
     /// Where what closes an aisle beyond its end begins.

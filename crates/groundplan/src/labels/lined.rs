@@ -63,11 +63,12 @@ impl Turned {
     pub fn lie(&mut self, frame: &Frame, lined: &Lined) {
         let near = Self::near_line(frame);
         let sides = self.grounds.sides();
-        let is_there = |n: &usize| {
-            let is_near = |&(side, _): &(f64, _)| (side - lined.offsets[*n]).abs() <= near;
-            !lined.are_sides[*n] || sides.iter().any(is_near)
-        };
-        let there: Vec<usize> = (0..lined.offsets.len()).filter(is_there).collect();
+        let mut is_there: Vec<bool> = lined.are_sides.iter().map(|is_side| !is_side).collect();
+        let known = OnLine::new(&lined.offsets, near);
+        for (side, _) in &sides {
+            is_there[known.at(*side)].fill(true);
+        }
+        let there: Vec<usize> = (0..is_there.len()).filter(|&n| is_there[n]).collect();
         let offsets: Vec<f64> = there.iter().map(|&n| lined.offsets[n]).collect();
         let [mut covered, mut touched] =
             [0, 1].map(|what| there.iter().map(|&n| lined.on[n][what].clone()).collect::<Vec<_>>());

@@ -1,6 +1,7 @@
 //! Looking along straight lines over the map, from sample to sample, over what is all alike in one leap.
 
 use crate::grid::{Grid, State, whole};
+use crate::sparing::is_large;
 use crate::tiles::{SIDE, Tiles};
 use std::ops::Range;
 
@@ -12,8 +13,6 @@ pub const OCCUPIED: u8 = 16 + BLOCKED;
 const BITS: u32 = 32;
 /// Lanes that are looked along side by side, at most.
 pub const LANES: usize = 3;
-/// Of more tiles than this, 128 megapixels, it is not kept how many are alike ahead.
-const MANY: usize = 1 << 21;
 /// More than what floats round, pixels or samples.
 const SLACK: f32 = 0.01;
 
@@ -42,7 +41,7 @@ impl<'a> Look<'a> {
             }),
             across: tiles.width,
             reaches: tiles.reaches(),
-            ahead: if tiles.states.len() <= MANY { tiles.ahead() } else { Default::default() },
+            ahead: if is_large(&grid.frame) { Default::default() } else { tiles.ahead() },
             seen: tiles.seen(),
         }
     }

@@ -152,8 +152,8 @@ impl Turned {
 
     /// Lets go of all that is seen: what is left says where places are.
     pub fn let_go(&mut self) {
-        self.cells = Cells::default();
-        (self.rows, self.offsets, self.keys.1) = (Arc::default(), Arc::default(), Arc::default());
+        self.unsee();
+        (self.offsets, self.keys.1) = (Arc::default(), Arc::default());
         (self.covered, self.touched, self.lined) = (Arc::default(), Arc::default(), Arc::default());
         (self.panes, self.across) = (Arc::default(), Arc::default());
     }

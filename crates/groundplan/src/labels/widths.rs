@@ -86,7 +86,6 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let placed = placed(views, strips.iter().map(Strip::place));
-    let none = Widths::default();
     for place in Place::of_each(views, &strips) {
         let Place { views: [view, other], passing, .. } = &place;
         // What leads through all rows of a part of the place tells of that part.
@@ -100,15 +99,17 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
         }
         let alone = LazyCell::new(|| Alone::new(&place, &strips));
         for (n, own) in passing.iter().enumerate() {
-            let part = place.first_of(own).or(own.rows.first().copied()).map(|row| parts[row]);
-            let (known, is_told_within) = part.map_or((&none, false), |part| (&told[part].0, told[part].1));
-            let is_some = !own.rows.is_empty() && !own.next.is_empty() && own.rest <= REST && !known.is_empty();
+            if own.rows.is_empty() || own.rest > REST {
+                continue;
+            }
+            let (known, is_told_within) = &told[parts[place.first_of(own).unwrap_or(own.rows[0])]];
+            let is_some = !own.next.is_empty() && !known.is_empty();
             // Where the rows beside it go on to the wall, one that does not is empty there.
             let is_bay = || own.rows.len() == 1 && !own.is_led_on && is_at_wall(other, &strips[n]);
             let width = strips[n].width();
             // Ways past the rows' ends are as wide as the hall leaves, and tell nothing of what leads through the rows.
             let is_no_bay = || {
-                !is_told_within
+                !*is_told_within
                     && (view.pitch.map_or_else(
                         || alone.is_longer_than_bays(own, width) || alone.is_in_every_row(&place, own, width),
                         |pitch| !is_as_bays(width, pitch),
@@ -116,7 +117,7 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
             };
             let is_as_bays_lie = || alone.is_as_bays_lie(&place, &strips, own, width);
             let may_be_bay = || view.pitch.is_some_and(|pitch| is_as_bays(width, pitch));
-            let is_empty = || is_told_within && may_be_bay() && empties::is_empty(&place, &strips, n);
+            let is_empty = || *is_told_within && may_be_bay() && empties::is_empty(&place, &strips, n);
             let lies_as_bays = || is_as_bays_lie() || is_empty();
             stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && !is_bay() && !lies_as_bays());
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
@@ -124,8 +125,9 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
                 let [low, high] = shared(strips[n].across, strips[m].across);
                 strips[m].direction == other.direction && low - high < SHORTEST && passing[m].holds_more_than(own)
             };
-            let near = || placed[other.direction].touching(strips[n].along, wider(strips[n].across, SHORTEST));
-            stays[n] &= own.rows.is_empty() || own.rest > REST || !near().into_iter().any(is_beside);
+            let near =
+                || placed[other.direction].touching(strips[n].along, wider(strips[n].across, SHORTEST)).into_iter();
+            stays[n] &= !near().any(is_beside);
         }
     }
     let mut flags = stays.into_iter();
