@@ -94,14 +94,7 @@ pub fn ends(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<(us
     for (n, strip) in strips.iter().enumerate() {
         let view = &views[strip.direction];
         for side in [0, 1] {
-            let met = of_each[n].iter().map(|&m| &meetings[m]).any(|meeting| {
-                let place = meeting.corridors.iter().position(|c| *c == n);
-                place.is_some_and(|p| {
-                    let u = view.place(meeting.at)[0];
-                    !goes_on(view, strip, side, (strip.along[side] - u) * sign(side) - meeting.reach[p.min(1)])
-                })
-            });
-            if met {
+            if is_met(view, strip, n, side, of_each[n].iter().map(|&m| &meetings[m])) {
                 continue;
             }
             let beside = || {
@@ -117,6 +110,23 @@ pub fn ends(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<(us
         }
     }
     found
+}
+
+/// True when a strip, by its number, meets another at one of its ends, of all that it meets.
+pub fn is_met<'a>(
+    view: &Turned,
+    strip: &Strip,
+    n: usize,
+    side: usize,
+    mut met: impl Iterator<Item = &'a Meeting>,
+) -> bool {
+    met.any(|meeting| {
+        let place = meeting.corridors.iter().position(|c| *c == n);
+        place.is_some_and(|p| {
+            let u = view.place(meeting.at)[0];
+            !goes_on(view, strip, side, (strip.along[side] - u) * sign(side) - meeting.reach[p.min(1)])
+        })
+    })
 }
 
 /// True when a strip that is closed at a place goes on past it as another of its direction, over floor that both share.

@@ -4,6 +4,7 @@ mod alone;
 mod at_walls;
 mod barriers;
 mod bays;
+mod bends;
 mod beside;
 mod blocks;
 mod carried;

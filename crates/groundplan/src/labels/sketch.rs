@@ -1,6 +1,7 @@
 //! II-E before the map is divided into faces: corridors first, junctions where they meet, rows between them, and all
 //! that may be a door.
 
+use super::bends;
 use super::beside::placed;
 use super::blocks::Standing;
 use super::carried;
@@ -241,6 +242,9 @@ impl Plan {
             plan = Self::new(views, more, threads);
         }
         if let Some(more) = cornered::with(views, &plan.strips, evidence.parameters) {
+            plan = Self::new(views, more, threads);
+        }
+        if let Some(more) = bends::with(views, &plan.strips, &plan.meetings) {
             plan = Self::new(views, more, threads);
         }
         plan.racks = plan.find_racks(views, on_legs, &standing, threads);

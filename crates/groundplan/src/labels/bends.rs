@@ -1,0 +1,176 @@
+//! Bends: a passage ends where its walls turn, and leads on along another direction to a way that runs askew to it; the walls
+//! from there on are too short to be lines.
+
+use super::barriers;
+use super::beside::{Beside, placed};
+use super::corridors::{self, ASKEW, Strip};
+use super::junctions;
+use super::known::{Known, Led};
+use super::meeting::{LEAST_SINE, Meeting, of_each};
+use super::shut::{inner, sign};
+use super::stretches;
+use super::turned::Turned;
+use crate::ends::{around, holds, sorted, wider};
+use std::ops::Range;
+
+/// It turns no farther from where the sides of the known way end than so many of its widths, and is tried in steps of so
+/// much, metres.
+const NEAR: f64 = 1.5;
+const STEP: f64 = 0.1;
+/// Beyond the bend walls run along both its sides for so long at least and at most, metres.
+const LENGTH: [f64; 2] = [1.0, 10.0];
+/// It is so many times as wide as the known way, and their middles cross within so much of its own, in widths.
+const WIDTHS: [f64; 2] = [0.7, 1.4];
+const MIDDLE: f64 = 0.15;
+/// No more than this share of it is not free.
+const CLUTTER: f64 = 0.05;
+/// A side lies where something stands along so much of its length in one row of cells, and along so much of it within this
+/// share of the width.
+const SIDE: f64 = 0.5;
+const WALLED: f64 = 0.85;
+const WALL: f64 = 0.1;
+
+/// The ways with those that they lead to round a bend; none where there are no such.
+pub fn with(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Option<Vec<Strip>> {
+    let mut known = Known::new(views, strips);
+    let placed = placed(views, strips.iter().map(Strip::place));
+    for (n, met) in of_each(meetings, strips.len()).into_iter().enumerate() {
+        let own = &strips[n];
+        let from = &views[own.direction];
+        for side in [0, 1] {
+            if junctions::is_met(from, own, n, side, met.iter().map(|&m| &meetings[m])) {
+                continue;
+            }
+            let legs = views.iter().flat_map(|view| [-1.0, 1.0].map(|to| (view, to)));
+            let bends =
+                legs.filter_map(|(view, to)| Bend { views, strips, placed: &placed, own, from, side, view, to }.best());
+            if let Some(found) = bends.min_by(|one, two| one.off.total_cmp(&two.off)) {
+                known.add(found.led);
+            }
+        }
+    }
+    known.with_more()
+}
+
+/// What a way may lead to from one of its ends: along another direction, that way or the other.
+struct Bend<'a> {
+    views: &'a [Turned],
+    strips: &'a [Strip],
+    placed: &'a [Beside],
+    own: &'a Strip,
+    from: &'a Turned,
+    side: usize,
+    view: &'a Turned,
+    to: f64,
+}
+
+/// A way round a bend, and how far from its middle the known one's leads, in widths.
+struct Found {
+    led: Led,
+    off: f64,
+}
+
+impl Bend<'_> {
+    /// The one of which the middle lies best.
+    fn best(&self) -> Option<Found> {
+        let cos = libm::cos(self.view.angle - self.from.angle) * self.to * sign(self.side);
+        let is_askew = |one: &Turned, other: &Turned, least| libm::sin(one.angle - other.angle).abs() >= least;
+        let leads_to = |other: &Turned| is_askew(other, self.from, LEAST_SINE) && is_askew(other, self.view, ASKEW);
+        if !is_askew(self.view, self.from, ASKEW) || cos < -ASKEW || !self.views.iter().any(leads_to) {
+            return None;
+        }
+        let tried = (2.0 * NEAR * self.own.width() / STEP) as usize;
+        let first = self.own.along[self.side] - NEAR * self.own.width();
+        // The inner side begins where it meets the known way's.
+        let inner = self.own.width() / 2.0 * libm::tan(libm::acos(cos) / 2.0);
+        let found = (0..=tried).filter_map(|n| self.at(first + n as f64 * STEP, inner));
+        found.min_by(|one, two| one.off.total_cmp(&two.off))
+    }
+
+    /// The one that turns at a place along the known way's middle, with its inner side from so far beyond.
+    fn at(&self, turn: f64, inner: f64) -> Option<Found> {
+        let Self { view, to, own, .. } = *self;
+        let [u, v] = view.place(self.from.to_map([turn, own.middle()]));
+        let begins = u + to * inner;
+        let core = wider([v; 2], WIDTHS[0] / 4.0 * own.width());
+        let is_free = |columns, [low, high]: [f64; 2]| view.mean_blocked(columns, low, high) <= CLUTTER;
+        if !is_free(columns(view, [u, begins + to * LENGTH[0]]), core) || !self.leads_to(turn) {
+            return None;
+        }
+        let (ends, middle) = self.ahead([u, v])?;
+        if !holds(LENGTH, (ends - begins) * to) || !is_free(columns(view, [u, ends]), core) {
+            return None;
+        }
+        let walled = columns(view, [begins, ends]);
+        let across = self.sides(v, walled.clone())?;
+        let width = across[1] - across[0];
+        let off = (f64::midpoint(across[0], across[1]) - v).abs() / width;
+        let is_way = off <= MIDDLE
+            && holds(WIDTHS.map(|share| share * own.width()), width)
+            && is_free(walled, wider(across, -WALL * width))
+            && !barriers::among(view, across, columns(view, [u, ends])).any();
+        let way = || stretches::ragged(view, sorted([u, ends]), across, (ends - u).abs());
+        is_way.then(|| Found { led: Led { way: way(), middles: sorted([u, middle]) }, off })
+    }
+
+    /// True when nothing stands in the known way from its end to a place along.
+    fn leads_to(&self, turn: f64) -> bool {
+        let end = self.own.along[self.side];
+        let [low, high] = inner(self.own);
+        (turn - end) * sign(self.side) <= 0.0
+            || self.from.mean_blocked(columns(self.from, [end, turn]), low, high) <= CLUTTER
+    }
+
+    /// The near side and the middle, along, of the first way that one from a place leads to, unless that one runs as the
+    /// known way does: then what lies between them is of a row.
+    fn ahead(&self, [u, v]: [f64; 2]) -> Option<(f64, f64)> {
+        let Self { view, to, .. } = *self;
+        let met_along = |other: &'_ Turned| {
+            let sine = libm::sin(other.angle - view.angle).abs();
+            if sine < ASKEW {
+                return None;
+            }
+            let farthest = u + to * (LENGTH[1] + corridors::widest(self.strips) / sine);
+            let ends = [u, farthest].map(|u| other.place(view.to_map([u, v])));
+            let [along, across] = [0, 1].map(|axis| around(ends.iter().map(|end| end[axis])));
+            let near = self.placed[other.direction].touching(along, across).into_iter().map(|n| &self.strips[n]);
+            let met = near.filter_map(|strip| {
+                let [there, middle] = view.crossing(other, v, strip.middle());
+                let side = middle - to * strip.width() / 2.0 / sine;
+                let is_met = strip != self.own && holds(strip.along, there) && (side - u) * to > 0.0;
+                is_met.then_some((side, middle, other.direction))
+            });
+            met.min_by(|one, two| (one.0 * to).total_cmp(&(two.0 * to)))
+        };
+        let met = self.views.iter().filter_map(met_along).min_by(|one, two| (one.0 * to).total_cmp(&(two.0 * to)));
+        let (side, middle, direction) = met?;
+        let is_askew = libm::sin(self.views[direction].angle - self.from.angle).abs() >= LEAST_SINE;
+        is_askew.then_some((side, middle))
+    }
+
+    /// Both sides of a way about a middle, where walls run along both over some columns.
+    fn sides(&self, middle: f64, columns: Range<usize>) -> Option<[f64; 2]> {
+        let cell = self.view.cell;
+        let rows = (WIDTHS[1] * self.own.width() / cell) as usize;
+        let is_held = |row: [f64; 2]| self.view.mean_blocked(columns.clone(), row[0], row[1]) >= SIDE;
+        let side = |sign: f64| {
+            let far = (0..rows)
+                .map(|n| n as f64 * cell)
+                .find(|far| is_held(sorted([*far, far + cell].map(|far| middle + sign * far))))?;
+            Some(middle + sign * far)
+        };
+        let across = [side(-1.0)?, side(1.0)?];
+        let near = WALL * (across[1] - across[0]);
+        let is_walled = |side: &f64| {
+            let held = self.view.blocked_where(columns.clone(), side - near, side + near, |share| share > 0.0);
+            held.count(0..columns.len()) as f64 >= WALLED * columns.len() as f64
+        };
+        across.iter().all(is_walled).then_some(across)
+    }
+}
+
+/// The columns between two places along, whichever lies first.
+fn columns(view: &Turned, ends: [f64; 2]) -> Range<usize> {
+    let [low, high] = sorted(ends);
+    view.column(low)..view.column(high) + 1
+}
