@@ -11,7 +11,7 @@ const WIDE: f64 = 0.14;
 const MOST: f64 = 64.0;
 
 /// Blocks of a few pixels along and across, with a border of blocks that hold none.
-pub struct Blocks {
+pub struct Blocks<'a> {
     /// Pixels along a row.
     wide: usize,
     pub width: usize,
@@ -19,19 +19,26 @@ pub struct Blocks {
     columns: Range<usize>,
     first: usize,
     /// The greatest squared clearance in each, in pixels.
-    pub clearance: Vec<u32>,
+    pub clearance: &'a [u32],
 }
 
-impl Blocks {
-    /// From the clearances of pixels in some columns and rows, of which each that is looked at is a row of blocks.
-    pub fn new(raster: &Raster, pixels: &Rows, Window { columns, rows, step }: &Window) -> Self {
+impl<'a> Blocks<'a> {
+    /// From the clearances of pixels in some columns and rows, of which each that is looked at is a row of blocks. They
+    /// take the room of others.
+    pub fn new(
+        raster: &Raster,
+        pixels: &Rows,
+        Window { columns, rows, step }: &Window,
+        clearance: &'a mut Vec<u32>,
+    ) -> Self {
         let wide = raster.pixels(WIDE).round().clamp(1.0, MOST) as usize;
         let from = &pixels.window;
         let within = columns.start - from.columns.start..columns.end - from.columns.start;
         let first = (rows.start - from.rows.start) / step;
         let height = (rows.end - from.rows.start).div_ceil(*step).min(from.count()) - first;
         let width = columns.len().div_ceil(wide) + 2;
-        let mut clearance = Vec::with_capacity(width * (height + 2));
+        clearance.clear();
+        clearance.reserve_exact(width * (height + 2));
         clearance.resize(width, 0);
         for n in first..first + height {
             clearance.push(0);
@@ -61,8 +68,9 @@ impl Blocks {
         [from + place.unwrap_or(0), pixels.window.row(n)]
     }
 
-    /// The blocks with so much clearance at least, from the widest to the tightest (a counting sort).
-    pub fn by_clearance(&self, least: u32) -> Vec<u32> {
+    /// The blocks with so much clearance at least, from the widest to the tightest (a counting sort). They take the room of
+    /// others.
+    pub fn by_clearance<'o>(&self, least: u32, order: &'o mut Vec<u32>) -> &'o [u32] {
         let top = self.clearance.iter().copied().max().unwrap_or(0) as usize;
         let mut starts = vec![0usize; top + 2];
         let wide = || self.clearance.iter().enumerate().filter(|(_, squared)| **squared >= least);
@@ -70,7 +78,7 @@ impl Blocks {
         for n in 1..starts.len() {
             starts[n] += starts[n - 1];
         }
-        let mut order = vec![0; starts[top + 1]];
+        order.resize(starts[top + 1], 0);
         for (block, &squared) in wide() {
             let start = &mut starts[top - squared as usize];
             order[*start] = block as u32;

@@ -139,9 +139,9 @@ fn whole(raster: &Raster, threads: usize) -> Rows {
     let above = window.above(raster, &bands);
     let mut first = vec![0; raster.width];
     let below = if bands.len() == 1 { vec![first] } else { window.below(raster, &bands, &mut first) };
-    let made = map_each(bands.len(), threads, |n| {
+    let made = map_each_in(bands.len(), threads, |upwards: &mut Vec<u16>, n| {
         let mut band = Vec::with_capacity(bands[n].len() * raster.width);
-        clearances(raster, &window, bands[n].clone(), &mut below[n].clone(), &above[n], &mut band);
+        clearances(raster, &window, bands[n].clone(), [&mut below[n].clone(), upwards], &above[n], &mut band);
         band
     });
     Rows { window, band, bands: made }
@@ -154,9 +154,9 @@ pub fn within(raster: &Raster, window: Window, mut room: Vec<u32>) -> Rows {
     room.clear();
     room.reserve_exact(window.count() * width);
     let bands = window.in_bands(ROWS);
-    let mut below = vec![0; width];
+    let (mut below, mut upwards) = (vec![0; width], Vec::new());
     for (band, above) in bands.iter().zip(window.above(raster, &bands)) {
-        clearances(raster, &window, band.clone(), &mut below, &above, &mut room);
+        clearances(raster, &window, band.clone(), [&mut below, &mut upwards], &above, &mut room);
     }
     Rows { band: window.count().max(1), window, bands: vec![room] }
 }
@@ -178,7 +178,7 @@ fn band_by_band(raster: &Raster, runs: &[Run], threads: usize, recall: &Recall, 
                 band.clone().map(pixels).map(|pixels| place(pixels.start)..place(pixels.end)).collect()
             })
             .collect();
-        let made = map_each_in(bands.len(), threads, |squared: &mut Vec<u32>, n| {
+        let made = map_each_in(bands.len(), threads, |(squared, upwards): &mut (Vec<u32>, Vec<u16>), n| {
             let all =
                 || own[n].iter().zip(bands[n].clone()).flat_map(|(own, row)| own.clone().map(move |run| (row, run)));
             let within = |(row, run): (usize, usize)| {
@@ -198,7 +198,7 @@ fn band_by_band(raster: &Raster, runs: &[Run], threads: usize, recall: &Recall, 
             recall.widths.or_find(key, || {
                 squared.clear();
                 squared.reserve_exact(bands[n].len() * width);
-                clearances(raster, &window, bands[n].clone(), &mut below[n].clone(), &above[n], squared);
+                clearances(raster, &window, bands[n].clone(), [&mut below[n].clone(), upwards], &above[n], squared);
                 all().map(within).map(|pixels| Width::new(&squared[pixels], &roots)).collect()
             })
         });
@@ -209,18 +209,19 @@ fn band_by_band(raster: &Raster, runs: &[Run], threads: usize, recall: &Recall, 
 }
 
 /// The squared clearances of rows, put to what is there. How far it is to what is not free within each column `below` says
-/// of the row before and then of the last one, `above` of the one that follows.
+/// of the row before and then of the last one, `above` of the one that follows; `upwards` is room.
 fn clearances(
     raster: &Raster,
     window: &Window,
     rows: Range<usize>,
-    below: &mut [u16],
+    [below, upwards]: [&mut Vec<u16>; 2],
     above: &[u16],
     all: &mut Vec<u32>,
 ) {
     let width = window.columns.len();
     // From the last row to the first how far it is upwards, and then back again.
-    let mut upwards = Vec::with_capacity(rows.len() * width);
+    upwards.clear();
+    upwards.reserve_exact(rows.len() * width);
     let mut row = above.to_vec();
     for n in rows.clone().rev() {
         window.step_down(raster, n, &mut row);

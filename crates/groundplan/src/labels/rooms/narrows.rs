@@ -36,16 +36,16 @@ pub fn find(raster: &Raster, clearance: &Clearance, threads: usize, recall: &Rec
     let squares: Vec<[Range<usize>; 2]> =
         parts(raster.height).flat_map(|rows| parts(raster.width).map(move |columns| [columns, rows.clone()])).collect();
     let wider = |range: &Range<usize>, size: usize| range.start.saturating_sub(around)..(range.end + around).min(size);
-    map_each_in(squares.len(), threads, |room: &mut Vec<u32>, n| {
+    map_each_in(squares.len(), threads, |(clearances, room): &mut (Vec<u32>, Room), n| {
         let [columns, rows] = &squares[n];
         let window = Window::new(raster, [wider(columns, raster.width), wider(rows, raster.height)]);
         let mut find = || {
             let found = if let Some(pixels) = clearance.whole() {
-                Part::new(raster, pixels, &window).narrows()
+                Part::new(raster, pixels, &window, room).narrows()
             } else {
-                let pixels = within(raster, window.clone(), std::mem::take(room));
-                let found = Part::new(raster, &pixels, &window).narrows();
-                *room = pixels.into_room();
+                let pixels = within(raster, window.clone(), std::mem::take(clearances));
+                let found = Part::new(raster, &pixels, &window, room).narrows();
+                *clearances = pixels.into_room();
                 found
             };
             let own = found.into_iter().filter(|([x, y], _)| columns.contains(x) && rows.contains(y));
@@ -64,24 +64,38 @@ fn seen(raster: &Raster, Window { columns, rows, .. }: &Window) -> Key {
     rows.clone().map(row).fold(start, |key, row| key.bits(&raster.free, row))
 }
 
+/// Room for what is made of one part after another.
+#[derive(Default)]
+struct Room {
+    clearance: Vec<u32>,
+    order: Vec<u32>,
+    basins: Vec<u32>,
+}
+
 /// Part of the free space.
 struct Part<'a> {
     raster: &'a Raster,
     pixels: &'a Rows,
     /// Squared clearances of narrows in pixels: from, to.
     narrows: [f64; 2],
-    blocks: Blocks,
+    blocks: Blocks<'a>,
+    /// For each block its basin, or none.
+    basins: &'a [u32],
 }
 
 impl<'a> Part<'a> {
-    fn new(raster: &'a Raster, pixels: &'a Rows, window: &Window) -> Self {
+    fn new(raster: &'a Raster, pixels: &'a Rows, window: &Window, room: &'a mut Room) -> Self {
         let narrows = [WIDTHS.0, WIDTHS.1].map(|metres| (raster.pixels(metres) / 2.0).powi(2));
-        Self { raster, pixels, narrows, blocks: Blocks::new(raster, pixels, window) }
+        let Room { clearance, order, basins } = room;
+        let blocks = Blocks::new(raster, pixels, window, clearance);
+        let least = (NARROW * NARROW * narrows[0]).ceil().max(1.0) as u32;
+        find_basins(&blocks, blocks.by_clearance(least, order), basins);
+        Self { raster, pixels, narrows, blocks, basins }
     }
 
     /// The pixel in the middle of each narrow and its closure.
     fn narrows(&self) -> Vec<([usize; 2], Bar)> {
-        let basins = self.basins();
+        let basins = self.basins;
         let mut borders: Vec<(u32, u32, usize)> = Vec::new();
         for step in [1, self.blocks.width] {
             // Mostly many one after another are of one basin, or of none.
@@ -113,55 +127,6 @@ impl<'a> Part<'a> {
             self.closure(pixel, self.blocks.clearance[block]).map(|bar| (pixel, bar))
         });
         closures.min_by(|a, b| a.1.length().total_cmp(&b.1.length()))
-    }
-
-    /// The basins of the clearance: places that a narrow parts from all others (watershed, with basins joined where the
-    /// way between them is hardly tighter than the tighter of the two).
-    fn basins(&self) -> Vec<u32> {
-        let clearance = &self.blocks.clearance;
-        let mut sets = Sets::new(1);
-        let mut tops = vec![0u32];
-        let mut basins = vec![0u32; clearance.len()];
-        let least = (NARROW * NARROW * self.narrows[0]).ceil().max(1.0) as u32;
-        for block in self.blocks.by_clearance(least) {
-            let block = block as usize;
-            let around = self.blocks.around(block, &basins);
-            // Mostly all are of one.
-            let most = around.into_iter().fold(0, u32::max);
-            // One less, so that none is the greatest.
-            let least = around.into_iter().map(|basin| basin.wrapping_sub(1)).fold(u32::MAX, u32::min);
-            if most != 0 && least == most - 1 {
-                basins[block] = sets.of(most);
-                continue;
-            }
-            let mut here = 0;
-            for basin in around {
-                if basin == 0 || basin == here {
-                    continue;
-                }
-                let other = sets.of(basin);
-                if here == 0 || here == other {
-                    here = other;
-                    continue;
-                }
-                let rank = |set: u32| (tops[set as usize], u32::MAX - set);
-                let (wide, tight) = if rank(here) > rank(other) { (here, other) } else { (other, here) };
-                if f64::from(clearance[block]) >= NARROW * NARROW * f64::from(tops[tight as usize]) {
-                    sets.join(wide, tight);
-                }
-                here = wide;
-            }
-            if here == 0 {
-                here = sets.add();
-                tops.push(clearance[block]);
-            }
-            basins[block] = here;
-        }
-        let roots: Vec<u32> = (0..tops.len() as u32).map(|basin| sets.of(basin)).collect();
-        for basin in &mut basins {
-            *basin = roots[*basin as usize];
-        }
-        basins
     }
 
     /// The widest block of each connected piece of the border between two basins.
@@ -245,5 +210,54 @@ impl<'a> Part<'a> {
         let (p, q) = ([ax as f64, ay as f64], [x as f64, y as f64]);
         let [ux, uy] = Bar { ends: [p, q] }.heading();
         Some(Bar { ends: [[p[0] + ux, p[1] + uy], [q[0] - ux, q[1] - uy]] })
+    }
+}
+
+/// The basins of the clearance: places that a narrow parts from all others (watershed, with basins joined where the way
+/// between them is hardly tighter than the tighter of the two). Of blocks from the widest to the tightest.
+fn find_basins(blocks: &Blocks, order: &[u32], basins: &mut Vec<u32>) {
+    let mut sets = Sets::new(1);
+    let mut tops = vec![0u32];
+    // Written, and not room that is known to hold zeros: of such each page would be made twice, when it is first read and
+    // when it is first written, and all threads told so.
+    basins.clear();
+    basins.resize(blocks.clearance.len(), 0);
+    for &block in order {
+        let block = block as usize;
+        let around = blocks.around(block, basins);
+        // Mostly all are of one.
+        let most = around.into_iter().fold(0, u32::max);
+        // One less, so that none is the greatest.
+        let least = around.into_iter().map(|basin| basin.wrapping_sub(1)).fold(u32::MAX, u32::min);
+        if most != 0 && least == most - 1 {
+            basins[block] = sets.of(most);
+            continue;
+        }
+        let mut here = 0;
+        for basin in around {
+            if basin == 0 || basin == here {
+                continue;
+            }
+            let other = sets.of(basin);
+            if here == 0 || here == other {
+                here = other;
+                continue;
+            }
+            let rank = |set: u32| (tops[set as usize], u32::MAX - set);
+            let (wide, tight) = if rank(here) > rank(other) { (here, other) } else { (other, here) };
+            if f64::from(blocks.clearance[block]) >= NARROW * NARROW * f64::from(tops[tight as usize]) {
+                sets.join(wide, tight);
+            }
+            here = wide;
+        }
+        if here == 0 {
+            here = sets.add();
+            tops.push(blocks.clearance[block]);
+        }
+        basins[block] = here;
+    }
+    let roots: Vec<u32> = (0..tops.len() as u32).map(|basin| sets.of(basin)).collect();
+    for basin in basins {
+        *basin = roots[*basin as usize];
     }
 }
