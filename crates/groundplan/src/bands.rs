@@ -19,7 +19,16 @@ pub fn map_bands<T: Send>(
     threads: usize,
     pass: impl Fn(Range<usize>) -> T + Sync,
 ) -> Vec<T> {
-    map_each(rows.div_ceil(BAND_ROWS), worth(width * rows, threads), |n| pass(band(n, rows)))
+    map_bands_in([width, rows], threads, |(), band| pass(band))
+}
+
+/// [`map_bands`] in room of each thread's own, which it finds as it left it: what is large is not asked of the system anew.
+pub fn map_bands_in<T: Send, R: Default + Send>(
+    [width, rows]: [usize; 2],
+    threads: usize,
+    pass: impl Fn(&mut R, Range<usize>) -> T + Sync,
+) -> Vec<T> {
+    map_each_in(rows.div_ceil(BAND_ROWS), worth(width * rows, threads), |room, n| pass(room, band_rows(n, rows)))
 }
 
 /// As many of the threads as so many pixels are worth.
@@ -43,7 +52,7 @@ pub fn flat_map_each<T: Send, M: IntoIterator<Item = T>>(
     made.into_iter().flatten().collect()
 }
 
-/// [`map_each`] in room of each thread's own, which it finds as it left it: what is large is not asked of the system anew.
+/// [`map_each`] in room of each thread's own, as in [`map_bands_in`].
 pub fn map_each_in<T: Send, R: Default + Send>(
     count: usize,
     threads: usize,
@@ -127,7 +136,8 @@ pub fn each<T: Send>(tasks: Vec<T>, threads: usize, work: impl Fn(T) + Sync) {
     fold(count, threads, || (), |(), _| next().into_iter().for_each(&work), |(), ()| ());
 }
 
-fn band(n: usize, rows: usize) -> Range<usize> {
+/// The rows of a band, of so many.
+pub fn band_rows(n: usize, rows: usize) -> Range<usize> {
     n * BAND_ROWS..((n + 1) * BAND_ROWS).min(rows)
 }
 

@@ -3,7 +3,6 @@
 
 use crate::bands::map_bands;
 use crate::grid::{Grid, State};
-use std::ops::Range;
 
 /// Pixels along a tile's side: a word of eight bytes. A band of rows has whole tiles.
 pub(crate) const SIDE: usize = 8;
@@ -69,40 +68,6 @@ impl Tiles {
         corners.into_iter().map(|corner| corner.map(|n| (n * SIDE) as f64)).collect()
     }
 
-    /// How many tiles follow each that are like it, 255 at most: to the right, upwards, to the left and downwards.
-    pub fn ahead(&self) -> [Vec<u8>; 4] {
-        let width = self.width.max(1);
-        let mut ahead = [0; 4].map(|_| vec![0; self.states.len()]);
-        let [right, up, left, down] = &mut ahead;
-        let more = |own: u8, next: u8, follow: u8| if own == next { follow.saturating_add(1) } else { 0 };
-        for (n, states) in self.states.chunks(width).enumerate() {
-            let [right, left] = [&mut *right, &mut *left].map(|all| &mut all[n * width..][..states.len()]);
-            for n in 1..states.len() {
-                left[n] = more(states[n], states[n - 1], left[n - 1]);
-            }
-            for n in (1..states.len()).rev() {
-                right[n - 1] = more(states[n - 1], states[n], right[n]);
-            }
-        }
-        // Of two rows the upper one, and the lower one.
-        let rows = |n: usize| [n * width..(n + 1) * width, (n - 1) * width..n * width];
-        let add = |to: &mut [u8], own: Range<usize>, next: Range<usize>| {
-            let follow = to[next.clone()].to_vec();
-            for (((to, &own), &next), follow) in
-                to[own.clone()].iter_mut().zip(&self.states[own]).zip(&self.states[next]).zip(follow)
-            {
-                *to = more(own, next, follow);
-            }
-        };
-        for [upper, lower] in (1..self.height).map(rows) {
-            add(down, upper, lower);
-        }
-        for [upper, lower] in (1..self.height).rev().map(rows) {
-            add(up, lower, upper);
-        }
-        ahead
-    }
-
     /// How far from each tile all is alike: 0 where it is of several states itself, 1 when a neighbour is not like it,
     /// 2 when a neighbour's neighbour is not, and so on. Beyond the map's borders all is unknown.
     pub fn reaches(&self) -> Vec<u8> {
@@ -132,20 +97,5 @@ impl Tiles {
             }
         }
         (1..=h).flat_map(|y| reaches[y * wide + 1..y * wide + 1 + w].iter().copied()).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn tiles_that_follow_are_counted_along_rows_and_columns() {
-        let states = vec![1, 1, 2, 2, 2, 1, 1, 2, 2, 3, 1, 1];
-        let [right, up, left, down] = Tiles { width: 4, height: 3, states }.ahead();
-        assert_eq!(right, [1, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0]);
-        assert_eq!(left, [0, 1, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1]);
-        assert_eq!(up, [0, 1, 0, 1, 1, 0, 1, 0, 0, 0, 0, 0]);
-        assert_eq!(down, [0, 0, 0, 0, 0, 1, 0, 1, 1, 0, 1, 0]);
     }
 }

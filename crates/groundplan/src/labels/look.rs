@@ -1,7 +1,6 @@
 //! Looking along straight lines over the map, from sample to sample, over what is all alike in one leap.
 
 use crate::grid::{Grid, State, whole};
-use crate::sparing::is_large;
 use crate::tiles::{SIDE, Tiles};
 use std::ops::Range;
 
@@ -23,8 +22,6 @@ pub struct Look<'a> {
     samples: [u8; 256],
     across: usize,
     reaches: Vec<u8>,
-    /// How many tiles are alike from each on, to the right, upwards, to the left and downwards; of large maps it is not kept.
-    ahead: [Vec<u8>; 4],
     /// Corners of all that was seen of the map.
     seen: Vec<[f64; 2]>,
 }
@@ -41,14 +38,39 @@ impl<'a> Look<'a> {
             }),
             across: tiles.width,
             reaches: tiles.reaches(),
-            ahead: if is_large(&grid.frame) { Default::default() } else { tiles.ahead() },
             seen: tiles.seen(),
         }
     }
 
-    /// How many tiles ahead of one are known to be like it.
-    fn ahead(&self, way: usize, tile: usize) -> u8 {
-        self.ahead[way].get(tile).copied().unwrap_or(0)
+    /// How many tiles follow each that are like it, for what is looked along with one step again and again.
+    pub fn ahead(&self, step: [f64; 2]) -> Ahead {
+        let (across, way) = (self.across.max(1), way_of(fixed(step)));
+        let mut ahead = vec![0u8; self.reaches.len()];
+        // What is of several states is never leapt from, and mostly one of two says that all around it is like it.
+        let is_like = |own: usize, next: usize| match [own, next].map(|tile| self.reaches[tile]) {
+            [0, _] | [_, 0] => false,
+            [1, 1] => self.state(own) == self.state(next),
+            _ => true,
+        };
+        let mut visit = |own: usize, next: usize| {
+            if is_like(own, next) {
+                ahead[own] = ahead[next].saturating_add(1);
+            }
+        };
+        let count = self.reaches.len();
+        let rows = (0..count).step_by(across);
+        match way {
+            0 => rows.for_each(|row| (row + 1..row + across).rev().for_each(|next| visit(next - 1, next))),
+            1 => (across..count).rev().for_each(|next| visit(next - across, next)),
+            2 => rows.for_each(|row| (row + 1..row + across).for_each(|own| visit(own, own - 1))),
+            _ => (across..count).for_each(|own| visit(own, own - across)),
+        }
+        Ahead(ahead)
+    }
+
+    /// What a sample of a tile is that is all of one state.
+    fn state(&self, tile: usize) -> u8 {
+        self.samples[usize::from(self.rows[tile / self.across * SIDE][tile % self.across * SIDE])]
     }
 
     /// Points, in pixels of the grid, that have all between them that was seen of the map; none where nothing was.
@@ -59,21 +81,28 @@ impl<'a> Look<'a> {
     /// What lies at each sample, the first at `start`, each a `step` on, in pixels of the grid; outside the map nothing
     /// was seen.
     pub fn along(&self, start: [f64; 2], step: [f64; 2], samples: &mut [u8]) {
-        self.cells(&[start], step, 0, samples);
+        self.cells(&[start], step, &Ahead::default(), 0, samples);
     }
 
     /// The sums of what lies in cells, which have as many samples along as there are lanes of them, [`LANES`] at most;
     /// each lane begins at a place of its own. Those from the `first` cell on.
-    pub fn cells(&self, lanes: &[[f64; 2]], step: [f64; 2], first: usize, cells: &mut [u8]) {
+    pub fn cells(&self, lanes: &[[f64; 2]], step: [f64; 2], ahead: &Ahead, first: usize, cells: &mut [u8]) {
         match *lanes {
-            [one] => self.cells_of([one], step, first, cells),
-            [one, two] => self.cells_of([one, two], step, first, cells),
-            [one, two, three] => self.cells_of([one, two, three], step, first, cells),
+            [one] => self.cells_of([one], step, ahead, first, cells),
+            [one, two] => self.cells_of([one, two], step, ahead, first, cells),
+            [one, two, three] => self.cells_of([one, two, three], step, ahead, first, cells),
             _ => debug_assert!(lanes.is_empty(), "{} lanes, {LANES} at most", lanes.len()),
         }
     }
 
-    fn cells_of<const PER: usize>(&self, lanes: [[f64; 2]; PER], step: [f64; 2], first: usize, cells: &mut [u8]) {
+    fn cells_of<const PER: usize>(
+        &self,
+        lanes: [[f64; 2]; PER],
+        step: [f64; 2],
+        ahead: &Ahead,
+        first: usize,
+        cells: &mut [u8],
+    ) {
         let step = fixed(step);
         let starts = lanes.map(|start| after(fixed(start), step, first * PER));
         // The cells of which a sample is on the map, and those of which all are.
@@ -100,7 +129,7 @@ impl<'a> Look<'a> {
                 let place = after(starts[0], step, n * PER);
                 let [x, y] = place.map(|p| (p >> BITS) as usize);
                 let tile = y / SIDE * self.across + x / SIDE;
-                let leap = alike.samples(place, self.reaches[tile], self.ahead(alike.way, tile)) / PER;
+                let leap = alike.samples(place, self.reaches[tile], ahead.of(tile)) / PER;
                 if leap > 0 {
                     let end = all.end.min(n + leap);
                     cells[n..end].fill(whole * self.samples[usize::from(self.rows[y][x])]);
@@ -132,7 +161,15 @@ impl<'a> Look<'a> {
 
     /// In which cells something stands on a lane that has so many samples in each: these get its bit. From the first of
     /// some cells on.
-    pub fn mark(&self, lane: [f64; 2], step: [f64; 2], [per, first]: [usize; 2], bit: u32, cells: &mut [u32]) {
+    pub fn mark(
+        &self,
+        lane: [f64; 2],
+        step: [f64; 2],
+        ahead: &Ahead,
+        [per, first]: [usize; 2],
+        bit: u32,
+        cells: &mut [u32],
+    ) {
         let step = fixed(step);
         let start = after(fixed(lane), step, first * per);
         let on_map = self.on_map(start, step, cells.len() * per);
@@ -142,7 +179,7 @@ impl<'a> Look<'a> {
             let mut place = after(start, step, n);
             let [x, y] = place.map(|p| (p >> BITS) as usize);
             let tile = y / SIDE * self.across + x / SIDE;
-            let leap = alike.samples(place, self.reaches[tile], self.ahead(alike.way, tile));
+            let leap = alike.samples(place, self.reaches[tile], ahead.of(tile));
             if leap > 0 {
                 let end = on_map.end.min(n + leap);
                 if self.stands([x, y]) {
@@ -200,10 +237,26 @@ fn after(start: [i64; 2], step: [i64; 2], samples: usize) -> [i64; 2] {
     [0, 1].map(|axis| start[axis] + samples as i64 * step[axis])
 }
 
+/// How many tiles are known to follow each that are like it.
+#[derive(Default)]
+pub struct Ahead(Vec<u8>);
+
+impl Ahead {
+    fn of(&self, tile: usize) -> u8 {
+        self.0.get(tile).copied().unwrap_or(0)
+    }
+}
+
+/// The axis that steps run along rather than the other: to the right, upwards, to the left, downwards.
+fn way_of(step: [i64; 2]) -> usize {
+    let axis = usize::from(step[1].abs() > step[0].abs());
+    axis + if step[axis] < 0 { 2 } else { 0 }
+}
+
 /// How far lanes side by side go on over what is all alike.
 struct Alike {
     step: [i64; 2],
-    /// The axis that they run along rather than the other: to the right, upwards, to the left, downwards.
+    /// Which way they run.
     way: usize,
     /// Pixels, times this, are samples.
     pace: [f32; 2],
@@ -218,9 +271,7 @@ impl Alike {
             let off = || starts.iter().map(|start| start[axis] - starts[0][axis]);
             [-off().min().unwrap_or(0), off().max().unwrap_or(0)].map(pixels)
         });
-        let axis = usize::from(step[1].abs() > step[0].abs());
-        let way = axis + if step[axis] < 0 { 2 } else { 0 };
-        Self { step, way, pace: step.map(|s| 1.0 / pixels(s).abs()), beside }
+        Self { step, way: way_of(step), pace: step.map(|s| 1.0 / pixels(s).abs()), beside }
     }
 
     /// Samples from a place of the first lane on, over tiles that are alike so far around the one that it is in, and so
@@ -268,5 +319,32 @@ fn within(start: i64, step: i64, size: i64) -> (i64, i64) {
         -1 => ((start - size).div_euclid(-step) + 1, start.div_euclid(-step) + 1),
         _ if (0..size).contains(&start) => (0, i64::MAX),
         _ => (0, 0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{Frame, Table};
+
+    #[test]
+    fn tiles_that_follow_are_counted_along_rows_and_columns() {
+        // Free, unknown, and of several states.
+        let tiles = ["ffuuu", "ffuu.", "ffuuu", "fffff"];
+        let (width, height) = (5 * SIDE, 4 * SIDE);
+        let pixel = |n: usize| match tiles[n / width / SIDE].as_bytes()[n % width / SIDE] {
+            b'f' => 254,
+            b'u' => 205,
+            _ => [0, 254][n % 2],
+        };
+        let pixels: Vec<u8> = (0..width * height).map(pixel).collect();
+        let (table, frame) = (Table::trinary(), Frame::new(width, height, 0.05, [0.0; 3]));
+        let grid = Grid::new(&pixels, true, &table, frame);
+        let look = Look::new(&grid, &Tiles::new(&grid, 1));
+        let ahead = |step: [f64; 2]| look.ahead(step).0.chunks(5).map(<[u8]>::to_vec).collect::<Vec<_>>();
+        assert_eq!(ahead([1.0, 0.1]), [[1, 0, 2, 1, 0], [1, 0, 1, 0, 0], [1, 0, 2, 1, 0], [4, 3, 2, 1, 0]]);
+        assert_eq!(ahead([-1.0, 0.1]), [[0, 1, 0, 1, 2], [0, 1, 0, 1, 0], [0, 1, 0, 1, 2], [0, 1, 2, 3, 4]]);
+        assert_eq!(ahead([0.1, 1.0]), [[3, 3, 2, 2, 0], [2, 2, 1, 1, 0], [1, 1, 0, 0, 0], [0, 0, 0, 0, 0]]);
+        assert_eq!(ahead([0.1, -1.0]), [[0, 0, 0, 0, 0], [1, 1, 1, 1, 0], [2, 2, 2, 2, 0], [3, 3, 0, 0, 0]]);
     }
 }

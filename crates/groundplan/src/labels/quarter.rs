@@ -72,10 +72,11 @@ pub fn see(views: &mut [Turned], scene: &Scene, look: &Look) {
 
 /// The cells of a view, row after row, as the map has them.
 fn cells(view: &Turned, scene: &Scene, look: &Look, threads: usize) -> Vec<u8> {
-    let [length, width] = view.size;
+    let ([length, width], frame) = (view.size, &scene.grid.frame);
+    let ahead = view.ahead(frame, look);
     let rows = |band: Range<usize>| {
         let mut cells = vec![0; band.len() * length];
-        cells.chunks_mut(length).zip(band).for_each(|(row, n)| view.look_along(&scene.grid.frame, look, n, 0, row));
+        view.look_along(frame, look, &ahead, band, 0, &mut cells);
         cells
     };
     // Without threads nothing need be put together.

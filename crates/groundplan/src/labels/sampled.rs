@@ -1,7 +1,7 @@
 //! The cells of the map seen along one direction: how many of each one's samples are blocked or occupied.
 
 use super::Scene;
-use super::look::{BLOCKED, LANES, Look, OCCUPIED, between_rays};
+use super::look::{Ahead, BLOCKED, LANES, Look, OCCUPIED, between_rays};
 use super::patches::Patches;
 use super::recall::Key;
 use super::summed::Part;
@@ -12,6 +12,9 @@ use std::ops::Range;
 
 /// Cells that are kept around what was seen: what stands in one bars those beside it.
 const SPARE: usize = 2;
+/// So many cells of one row after another are looked at together: across the map's rows these take many times the room
+/// that the processor has at hand.
+const TOGETHER: usize = 512;
 
 impl Turned {
     /// The samples that are blocked or occupied in each cell; all cells may be known, row after row, but for the racks on
@@ -27,41 +30,71 @@ impl Turned {
         let pixels = (self.cell / frame.resolution).round() as usize;
         let thin = pixels.div_ceil(2).clamp(samples, u32::BITS as usize);
         let looks = pixels.next_multiple_of(thin);
-        let make = |n: usize, first: usize, row: &mut [u8]| {
-            match known {
-                Some(cells) => row.copy_from_slice(&cells[n * self.size[0] + first..][..row.len()]),
-                None => self.look_along(frame, look, n, first, row),
+        let ahead = if known.is_none() || is_fine { self.ahead(frame, look) } else { Ahead::default() };
+        let make = |rows: Range<usize>, first: usize, cells: &mut [u8]| {
+            let width = cells.len() / rows.len();
+            if known.is_none() {
+                self.look_along(frame, look, &ahead, rows.clone(), first, cells);
             }
-            if is_fine {
-                let each = f64::from(self.samples) / looks as f64;
-                let step = steps[0].map(|step| step * each);
-                add_thin(row, [thin, looks], |k, stands, bit| {
-                    let lane = place(0.5 * each, (n * samples) as f64 + (k as f64 + 0.5) * each);
-                    look.mark(lane, step, [looks, first], bit, stands);
-                });
-                between_rays(row, self.samples.pow(2) as u8);
+            for (n, row) in rows.zip(cells.chunks_mut(width.max(1))) {
+                if let Some(cells) = known {
+                    row.copy_from_slice(&cells[n * self.size[0] + first..][..width]);
+                }
+                if is_fine {
+                    let each = f64::from(self.samples) / looks as f64;
+                    let step = steps[0].map(|step| step * each);
+                    add_thin(row, [thin, looks], |k, stands, bit| {
+                        let lane = place(0.5 * each, (n * samples) as f64 + (k as f64 + 0.5) * each);
+                        look.mark(lane, step, &ahead, [looks, first], bit, stands);
+                    });
+                    between_rays(row, self.samples.pow(2) as u8);
+                }
+                self.take(n, first, row);
             }
-            self.take(n, first, row);
         };
         let patches = scene.recall.patches(scene.grid, scene.threads);
         let key = |rows: Range<usize>| {
             let lanes = [rows.start, rows.end].map(|n| place(0.0, (n * samples) as f64));
             let under = |patches: &Patches| patches.under(lanes, steps[0], self.size[0] * samples);
             let key = patches.map_or(Key::default(), under).with(rows.len() as u64).with(samples as u64);
-            let [low, high] = [rows.start, rows.end].map(|n| self.start[1] + n as f64 * self.cell);
-            self.grounds.key(key, &rows, [low, high])
+            self.key_of_grounds(key, &rows)
         };
         let (seen, recall) = (self.seen(frame, look), scene.recall);
-        Cells::new(self.size, self.samples.pow(2) as u16, seen, Source { make, key }, recall, scene.threads)
+        Cells::new(
+            self.size,
+            self.samples.pow(2) as u16,
+            seen,
+            Source { make, key, known: &self.known },
+            recall,
+            scene.threads,
+        )
     }
 
-    /// The samples that are blocked or occupied in the cells of a row, from some column on.
-    pub(super) fn look_along(&self, frame: &Frame, look: &Look, n: usize, first: usize, row: &mut [u8]) {
-        let samples = self.samples as usize;
+    /// The samples that are blocked or occupied in the cells of some rows, from some column on.
+    pub(super) fn look_along(
+        &self,
+        frame: &Frame,
+        look: &Look,
+        ahead: &Ahead,
+        rows: Range<usize>,
+        first: usize,
+        cells: &mut [u8],
+    ) {
+        let (samples, width) = (self.samples as usize, cells.len() / rows.len());
         let (origin, steps) = self.samples_on(frame);
         let place = |b: f64| [0, 1].map(|axis| origin[axis] + 0.5 * steps[0][axis] + b * steps[1][axis]);
-        let lanes: [[f64; 2]; LANES] = std::array::from_fn(|j| place((n * samples + j) as f64 + 0.5));
-        look.cells(&lanes[..samples], steps[0], first, row);
+        for from in (0..width).step_by(TOGETHER) {
+            for (n, row) in rows.clone().zip(cells.chunks_mut(width)) {
+                let lanes: [[f64; 2]; LANES] = std::array::from_fn(|j| place((n * samples + j) as f64 + 0.5));
+                let to = width.min(from + TOGETHER);
+                look.cells(&lanes[..samples], steps[0], ahead, first + from, &mut row[from..to]);
+            }
+        }
+    }
+
+    /// How far the map is alike along the view.
+    pub(super) fn ahead(&self, frame: &Frame, look: &Look) -> Ahead {
+        look.ahead(self.samples_on(frame).1[0])
     }
 
     /// Whether some pixels lie between samples.

@@ -140,36 +140,32 @@ fn planned(evidence: &Evidence, look: &Look, mut views: Vec<Turned>, on_legs: &[
     if on_legs.is_empty() || plan.rows.is_empty() {
         return (views, plan);
     }
-    // Of a large map there is no room for what is seen with racks and without them.
-    let is_large = views.iter().any(Turned::is_large);
-    if is_large {
-        views.iter_mut().for_each(Turned::unsee);
-    }
     // Goods that stand between legs tell where there are none.
-    let bare = seen(evidence, look, &views, &[]);
+    let mut bare = seen(evidence, look, &mut views, &[]);
     let over = gates::through_several(evidence, look, &bare, &plan.strips, &plan.rows);
-    drop(bare);
-    if is_large {
-        views = seen(evidence, look, &views, on_legs);
+    if bare.iter().any(Turned::is_large) {
+        views = seen(evidence, look, &mut bare, on_legs);
     }
+    drop(bare);
     let left = carried::left_beside(&views, &over, on_legs);
     let left = carried::without_ways(evidence, &views, &joined::apart(&views, [across, over].concat()), &left);
     if left == on_legs {
         return (views, plan);
     }
     drop(plan);
-    views.iter_mut().for_each(Turned::unsee);
-    let views = seen(evidence, look, &views, &left);
+    let views = seen(evidence, look, &mut views, &left);
     let (plan, _) = Plan::of(evidence, look, &views, &left);
     (views, plan)
 }
 
-/// What is seen where other racks than those of some views stand on legs.
-fn seen(evidence: &Evidence, look: &Look, views: &[Turned], on_legs: &[Row]) -> Vec<Turned> {
+/// What is seen where other racks than those of some views stand on legs. Of a large map there is no room for both: those
+/// views let go of what they see.
+fn seen(evidence: &Evidence, look: &Look, views: &mut [Turned], on_legs: &[Row]) -> Vec<Turned> {
     let scene = evidence.scene();
-    let mut views: Vec<_> = views.iter().map(|view| view.with(&scene, on_legs)).collect();
-    see(evidence, look, &mut views);
-    views
+    let mut others: Vec<_> = views.iter().map(|view| view.with(&scene, on_legs)).collect();
+    views.iter_mut().filter(|view| view.is_large()).for_each(Turned::unsee);
+    see(evidence, look, &mut others);
+    others
 }
 
 /// What lies between the lines, for which of the gradients the specks are enough.

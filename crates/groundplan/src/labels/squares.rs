@@ -25,8 +25,8 @@ pub struct Band {
 
 /// Rows of cells, a byte for each column with its blocked samples in the low half and its occupied ones in the high
 /// half; and for each row a bit that says whether something stands in the cell before it, and one for the cell after it.
-#[derive(Debug)]
-struct Square {
+#[derive(Clone, Copy, Debug)]
+pub struct Square {
     // Bytes, and not numbers, take no more room than they need.
     cells: [[u8; SIDE]; SIDE],
     beside: [u8; 2],
@@ -251,10 +251,11 @@ impl Layer<'_> {
 }
 
 impl Band {
-    /// From its rows of cells.
-    pub fn new(width: usize, cells: &[u8]) -> Self {
+    /// From its rows of cells; `squares` is room.
+    pub fn new(width: usize, cells: &[u8], squares: &mut Vec<Square>) -> Self {
         let across = width.div_ceil(SIDE);
-        let mut made = Self { places: Vec::with_capacity(across * BAND), squares: Vec::new() };
+        let mut places = Vec::with_capacity(across * BAND);
+        squares.clear();
         for cells in cells.chunks(SIDE * width) {
             // What lies beyond the borders is like what lies on them.
             let last = cells.len() / width - 1;
@@ -268,14 +269,14 @@ impl Band {
                 let beside = [from.checked_sub(1).map_or(0, stands), stands(from + SIDE)];
                 let first = own[0][0];
                 let alike = own == [[first; SIDE]; SIDE] && (of_cell(first, What::Barred) == 1 || beside == [0; 2]);
-                made.places.push(if alike { ALIKE | u32::from(first) } else { made.squares.len() as u32 });
+                places.push(if alike { ALIKE | u32::from(first) } else { squares.len() as u32 });
                 if !alike {
-                    made.squares.push(Square { cells: own, beside });
+                    squares.push(Square { cells: own, beside });
                 }
             }
         }
-        made.squares.shrink_to_fit();
-        made
+        // No more room than they take.
+        Self { places, squares: squares.clone() }
     }
 }
 

@@ -7,7 +7,7 @@
 use super::recall::{Key, Recall};
 use super::squares::{self, Band, SquaredRows};
 use super::summed::{Part, Summed, SummedRows};
-use crate::bands::{map_bands, worth};
+use crate::bands::{BAND_ROWS, band_rows, map_bands, map_bands_in, worth};
 use crate::bits::Bits;
 use std::ops::Range;
 use std::sync::Arc;
@@ -68,12 +68,34 @@ impl Default for Cells {
     }
 }
 
+/// Bands of a large view that another has seen as it will, and what is told of all of that one's rows.
+#[derive(Default)]
+pub struct Known {
+    bands: Vec<Option<Arc<Band>>>,
+    told: Arc<Vec<Told>>,
+}
+
+impl Known {
+    /// Those of some cells for which it is so of their rows.
+    pub fn of(cells: &Cells, told: &Arc<Vec<Told>>, is_so: impl Fn(Range<usize>) -> bool) -> Self {
+        let Cells::Squared { bands, .. } = cells else { return Self::default() };
+        let band = |(n, band): (usize, &Arc<Band>)| is_so(band_rows(n, told.len())).then(|| Arc::clone(band));
+        Self { bands: bands.iter().enumerate().map(band).collect(), told: Arc::clone(told) }
+    }
+
+    fn band(&self, rows: Range<usize>) -> Option<(Arc<Band>, Vec<Told>)> {
+        let band = self.bands.get(rows.start / BAND_ROWS)?.as_ref()?;
+        Some((Arc::clone(band), self.told[rows].to_vec()))
+    }
+}
+
 /// What cells are made from.
-pub struct Source<M, K> {
-    /// Makes the cells of a row, a byte each, from some column on.
+pub struct Source<'k, M, K> {
+    /// Makes the cells of some rows, a byte each, from some column on.
     pub make: M,
     /// The key of all that the cells of some rows are made from.
     pub key: K,
+    pub known: &'k Known,
 }
 
 impl Cells {
@@ -83,24 +105,27 @@ impl Cells {
         [width, height]: [usize; 2],
         samples: u16,
         seen: Part,
-        Source { make, key }: Source<M, K>,
+        Source { make, key, known }: Source<M, K>,
         recall: &Recall,
         threads: usize,
     ) -> (Self, Vec<Told>)
     where
-        M: Fn(usize, usize, &mut [u8]) + Sync,
+        M: Fn(Range<usize>, usize, &mut [u8]) + Sync,
         K: Fn(Range<usize>) -> Key + Sync,
     {
         let keyed = recall.keeps();
         if are_many([width, height]) {
-            let made = map_bands([width, height], threads, |band| {
+            let made = map_bands_in([width, height], threads, |(cells, squares): &mut (Vec<u8>, _), band| {
                 recall.views.or_find(
                     || key(band.clone()),
                     || {
-                        let mut cells = vec![0u8; band.len() * width];
-                        cells.chunks_mut(width).zip(band.clone()).for_each(|(row, n)| make(n, 0, row));
+                        if let Some(known) = known.band(band.clone()) {
+                            return known;
+                        }
+                        cells.resize(band.len() * width, 0);
+                        make(band.clone(), 0, cells);
                         let told: Vec<Told> = cells.chunks(width).map(|row| Told::new(row, keyed)).collect();
-                        (Arc::new(Band::new(width, &cells)), told)
+                        (Arc::new(Band::new(width, cells, squares)), told)
                     },
                 )
             });
@@ -112,7 +137,7 @@ impl Cells {
         let Part { columns, rows } = seen;
         let summed = |band: Range<usize>| {
             let part = Part { columns: columns.clone(), rows: rows.start + band.start..rows.start + band.end };
-            Summed::new(part, samples, keyed, |n, row| make(n, columns.start, row))
+            Summed::new(part, samples, keyed, |n, row| make(n..n + 1, columns.start, row))
         };
         // Without threads one band, which nothing need be put to.
         let size = [columns.len(), rows.len()];
@@ -219,15 +244,16 @@ mod tests {
     fn rows_that_are_laid_out_answer_as_the_squares_they_are_from() {
         // So high that it is kept in squares: stretches that are all alike, and others.
         let (width, height) = (45, 7300);
-        let make = |row: usize, first: usize, cells: &mut [u8]| {
-            for (column, cell) in (first..).zip(cells) {
+        let make = |rows: Range<usize>, first: usize, cells: &mut [u8]| {
+            let places = rows.flat_map(|row| (first..width).map(move |column| [row, column]));
+            for ([row, column], cell) in places.zip(cells) {
                 let mixed = (row / 20 + column / 9) % 3 == 0;
                 *cell = if mixed { [0, 4, 0x21, 0x44][(row * 7 + column * 5) % 4] } else { 4 };
             }
         };
         let part = Part { columns: 0..width, rows: 0..height };
-        let (squared, _) =
-            Cells::new([width, height], 4, part, Source { make, key: |_| Key::default() }, &Recall::default(), 1);
+        let source = Source { make, key: |_| Key::default(), known: &Known::default() };
+        let (squared, _) = Cells::new([width, height], 4, part, source, &Recall::default(), 1);
         let asked = [What::Blocked, What::Barred];
         let mut room = Summed::default();
         for rows in [0..130, 61..333, 7170..7300, 505..506] {

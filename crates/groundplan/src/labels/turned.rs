@@ -9,7 +9,7 @@ use super::quarter::Quarter;
 use super::recall::Key;
 use super::rows::Row;
 use super::summed::Summed;
-use super::sums::{Cells, Told, What, are_many};
+use super::sums::{Cells, Known, Told, What, are_many};
 use super::{Evidence, Scene};
 use crate::bits::Bits;
 use crate::ends::wider;
@@ -36,6 +36,8 @@ pub struct Turned {
     /// Cells along and across.
     pub size: [usize; 2],
     pub(super) cells: Cells,
+    /// Of a large view, what another has seen as it will.
+    pub(super) known: Known,
     /// Samples along a cell's side.
     pub(super) samples: u32,
     /// Distance from post to post along its lines, metres, where posts recur.
@@ -70,9 +72,14 @@ impl Turned {
         made
     }
 
-    /// The same where other racks stand on legs; nothing is seen yet between its lines.
+    /// The same where other racks stand on legs; nothing is seen yet between its lines. Of a large view it knows all rows
+    /// in which the same racks stand.
     pub fn with(&self, scene: &Scene, on_legs: &[Row]) -> Self {
         let mut made = Self::new(scene, self.direction, on_legs);
+        made.known = Known::of(&self.cells, &self.rows, |rows| {
+            let [own, other] = [self, &made].map(|view| view.key_of_grounds(Key::default(), &rows));
+            own == other
+        });
         made.lie(&scene.grid.frame, &self.lined);
         made.lined = Arc::clone(&self.lined);
         made
@@ -100,6 +107,7 @@ impl Turned {
             start,
             size,
             cells: Cells::default(),
+            known: Known::default(),
             samples,
             pitch: None,
             offsets: Arc::default(),
@@ -139,7 +147,7 @@ impl Turned {
     /// Sees all of the map, for which no lines are needed; its cells may be known.
     pub fn see(&mut self, scene: &Scene, look: &Look, known: Option<&[u8]>) {
         let (cells, rows) = self.look_at(scene, look, known);
-        (self.cells, self.rows) = (cells, Arc::new(rows));
+        (self.cells, self.rows, self.known) = (cells, Arc::new(rows), Known::default());
     }
 
     /// Finds what recurs along the lines of what is seen; of the gradients the specks are asked.
@@ -163,6 +171,12 @@ impl Turned {
         (self.cells, self.rows) = (Cells::default(), Arc::default());
     }
 
+    /// A key with the racks on legs that reach into some rows of cells.
+    pub(super) fn key_of_grounds(&self, key: Key, rows: &Range<usize>) -> Key {
+        let [low, high] = [rows.start, rows.end].map(|n| self.start[1] + n as f64 * self.cell);
+        self.grounds.key(key, rows, [low, high])
+    }
+
     /// True when the cells are too many for sums of all rows.
     pub fn is_large(&self) -> bool {
         matches!(self.cells, Cells::Squared { .. })
@@ -175,6 +189,7 @@ impl Turned {
         let rows = from.saturating_sub(1)..(to + 1).min(self.size[1]);
         Some(Self {
             cells: self.cells.near(what, rows, room)?,
+            known: Known::default(),
             offsets: Arc::clone(&self.offsets),
             covered: Arc::clone(&self.covered),
             touched: Arc::clone(&self.touched),
