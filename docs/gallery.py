@@ -8,6 +8,7 @@ the report are printed where LibreCAD and poppler are installed. Names given on 
 
 from __future__ import annotations
 
+import difflib
 import os
 import shutil
 import subprocess
@@ -49,13 +50,18 @@ def maps(chosen: list[str]) -> Iterator[tuple[str, groundplan.Map]]:
     """Names and maps."""
     if not chosen or SIMULATED in chosen:
         yield SIMULATED, simulate.warehouse(seed=7, yaw=12.0).map
-    found = sorted((SHARED / "maps").rglob("*.yaml"))
+    folder = SHARED / "maps"
+    found = {"-".join(p.relative_to(folder).with_suffix("").parts): p for p in sorted(folder.rglob("*.yaml"))}
     if not found and chosen != [SIMULATED]:
-        raise SystemExit(f"error: there are no maps in {SHARED / 'maps'}\nhint: GROUNDPLAN_SHARED=DIR make gallery")
-    for path in found:
-        name = "-".join(path.relative_to(SHARED / "maps").with_suffix("").parts)
-        if chosen and name not in chosen:
+        raise SystemExit(f"error: there are no maps in {folder}\nhint: GROUNDPLAN_SHARED=DIR make gallery")
+    for name in chosen:
+        if name not in found and name != SIMULATED:
+            near = difflib.get_close_matches(name, found) or [other for other in found if name in other] or list(found)
+            raise SystemExit(f"error: there is no map {name!r} in {folder}\nhint: such as {', '.join(near[:5])}")
+    for name in chosen or found:
+        if name == SIMULATED:
             continue
+        path = found[name]
         try:
             yield name, groundplan.read(path)
         except groundplan.MapError:
