@@ -173,7 +173,7 @@ put = _canvas.Canvas.put
 def slowly(self, top, rows):
     put(self, top, rows)
     print("reading", flush=True)
-    time.sleep(0.05)
+    time.sleep(10)
 _canvas.Canvas.put = slowly
 from groundplan.cli import main
 sys.exit(main())
