@@ -15,6 +15,7 @@ use super::turned::Turned;
 use crate::bands::flat_map_each;
 use crate::ends::{around, overlap, shared, sorted};
 use std::collections::BTreeMap;
+use std::iter;
 
 /// What shares so much of a row's depth leads into it.
 const ENTERS: f64 = 0.35;
@@ -260,19 +261,25 @@ fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
     if crossed.iter().any(|c| c.at_end && c.way) {
         crossed.retain(|c| !c.at_end);
     }
+    if crossed.is_empty() {
+        return vec![strip];
+    }
     crossed.sort_by(|a, b| a.along[0].total_cmp(&b.along[0]));
-    let piece = |along: [f64; 2]| Strip { along, ..strip.clone() };
     let is_way = crossed.iter().any(|c| c.way);
-    let (Some(first), Some(last)) =
-        (crossed.iter().position(|c| is_way && c.open), crossed.iter().rposition(|c| is_way && c.open))
-    else {
-        let (Some(first), Some(last)) = (crossed.first(), crossed.last()) else { return vec![strip] };
-        let ends = [[strip.along[0], first.outer[0]], [last.outer[1], strip.along[1]]];
-        return ends.into_iter().filter(|[from, to]| to - from >= BEYOND).map(piece).collect();
+    let is_open = |c: &Crossed| is_way && c.open;
+    let open = crossed.iter().position(is_open).zip(crossed.iter().rposition(is_open));
+    // What goes on to the next row that it crosses, or to its own end, may lead through what is no row.
+    let through = open.map(|(first, last)| {
+        let from = first.checked_sub(1).map_or(strip.along[0], |before| crossed[before].along[1]);
+        [from, crossed.get(last + 1).map_or(strip.along[1], |after| after.along[0])]
+    });
+    let starts = iter::once(strip.along[0]).chain(crossed.iter().map(|c| c.outer[1]));
+    let ends = crossed.iter().map(|c| c.outer[0]).chain(iter::once(strip.along[1]));
+    let is_beyond = |&[from, to]: &[f64; 2]| {
+        to - from >= BEYOND && through.is_none_or(|through| overlap(through, [from, to]) <= 0.0)
     };
-    let from = if first == 0 { strip.along[0] } else { crossed[first].along[0] };
-    let to = if last + 1 == crossed.len() { strip.along[1] } else { crossed[last].along[1] };
-    vec![piece([from, to])]
+    let beyond = starts.zip(ends).map(|(from, to)| [from, to]).filter(is_beyond);
+    through.into_iter().chain(beyond).map(|along| Strip { along, ..strip.clone() }).collect()
 }
 
 /// How many places would be expected at which as many rows are free by chance (as of alignments, Desolneux, Moisan and
@@ -288,4 +295,47 @@ fn by_chance(crossed: &[Crossed]) -> f64 {
     let chance: f64 = rows().map(|(_, row)| common.max(row.free / row.places.max(1.0))).product();
     // A row has many places, but two ends.
     chance * rows().map(|(at_end, row)| if at_end { 2.0 } else { row.places }).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::corridors::UNTOLD;
+    use super::*;
+
+    /// A row between two aisles of 3 m, from one's middle to the other's.
+    fn row(along: [f64; 2], is_open: bool) -> Crossed {
+        let outer = [along[0] - 1.5, along[1] + 1.5];
+        Crossed { along, outer, way: is_open, open: is_open, at_end: false, free: None, between: Vec::new() }
+    }
+
+    /// The pieces of a strip from 0 to 40 m that crosses rows.
+    fn pieces(rows: &[Crossed]) -> Vec<[f64; 2]> {
+        let strip = Strip {
+            direction: 0,
+            along: [0.0, 40.0],
+            across: [0.0, 3.0],
+            score: 0.0,
+            bays: false,
+            is_ragged: false,
+            unseen: [false; 2],
+            held: UNTOLD,
+        };
+        ways(strip, rows.to_vec()).into_iter().map(|piece| piece.along).collect()
+    }
+
+    #[test]
+    fn what_leads_through_the_rows_of_one_hall_leads_on_to_those_of_the_next() {
+        let [one, two] = [row([1.5, 6.5], true), row([6.5, 11.5], true)];
+        // The next row is of another hall, behind what is no row.
+        assert_eq!(pieces(&[one.clone(), two.clone(), row([20.0, 25.0], false)]), [[0.0, 20.0], [26.5, 40.0]]);
+        // It lies behind the aisle where these end.
+        assert_eq!(pieces(&[one, two, row([11.5, 16.5], false)]), [[0.0, 11.5], [18.0, 40.0]]);
+    }
+
+    #[test]
+    fn what_leads_between_two_halls_is_none_through_their_rows() {
+        let [one, two] = [row([1.5, 6.5], false), row([25.0, 30.0], false)];
+        assert_eq!(pieces(&[one, two]), [[8.0, 23.5], [31.5, 40.0]]);
+        assert_eq!(pieces(&[]), [[0.0, 40.0]]);
+    }
 }
