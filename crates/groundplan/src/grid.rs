@@ -185,6 +185,13 @@ impl<'a> Grid<'a> {
         &self.pixels[lies * width..(lies + 1) * width]
     }
 
+    /// All pixels as they lie, where the first of the lowest row does among them, and how far from there the next row is.
+    pub(crate) fn lying(&self) -> (&'a [u8], usize, isize) {
+        let width = self.frame.width;
+        let lowest = if self.bottom_up { 0 } else { self.pixels.len().saturating_sub(width) };
+        (self.pixels, lowest, if self.bottom_up { width as isize } else { -(width as isize) })
+    }
+
     /// What is at a point of the map frame; nothing is known beyond the map.
     pub(crate) fn state_at(&self, point: [f64; 2]) -> State {
         self.pixel_at(point).map_or(State::Unknown, |pixel| self.state_of(pixel))

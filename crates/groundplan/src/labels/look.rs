@@ -8,6 +8,9 @@ use std::ops::Range;
 pub const BLOCKED: u8 = 1;
 pub const OCCUPIED: u8 = 16 + BLOCKED;
 
+/// A tile's state is told in so many bits, all of which are set where it has several.
+const BITS_OF_STATES: u32 = 2;
+const STATES: u8 = (1 << BITS_OF_STATES) - 1;
 /// Fixed-point bits of a place.
 const BITS: u32 = 32;
 /// Lanes that are looked along side by side, at most.
@@ -17,60 +20,85 @@ const SLACK: f32 = 0.01;
 
 /// The map, and where it is all alike.
 pub struct Look<'a> {
-    rows: Vec<&'a [u8]>,
-    width: usize,
+    pixels: &'a [u8],
+    /// Where the first pixel of the lowest row lies among them, and how far from there that of the next row.
+    lowest: usize,
+    next: isize,
+    size: [usize; 2],
     samples: [u8; 256],
     across: usize,
-    reaches: Vec<u8>,
+    /// Of each tile its state, or that it has several, and above these bits how far around it all is alike.
+    tiles: Vec<u8>,
     /// Corners of all that was seen of the map.
     seen: Vec<[f64; 2]>,
 }
 
 impl<'a> Look<'a> {
     pub fn new(grid: &Grid<'a>, tiles: &Tiles) -> Self {
+        let (pixels, lowest, next) = grid.lying();
         Self {
-            rows: (0..grid.frame.height).map(|y| grid.row(y)).collect(),
-            width: grid.frame.width,
+            pixels,
+            lowest,
+            next,
+            size: [grid.frame.width, grid.frame.height],
             samples: grid.table.states.map(|state| match state {
                 State::Free => 0,
                 State::Occupied => OCCUPIED,
                 State::Unknown => BLOCKED,
             }),
             across: tiles.width,
-            reaches: tiles.reaches(),
+            tiles: tiles
+                .reaches()
+                .into_iter()
+                .zip(&tiles.states)
+                .map(|(reach, states)| coded(reach, *states))
+                .collect(),
             seen: tiles.seen(),
         }
+    }
+
+    /// What a sample is that lies on a pixel of the map.
+    #[inline]
+    fn sample(&self, [x, y]: [usize; 2]) -> u8 {
+        let place = self.lowest.wrapping_add_signed(self.next.wrapping_mul(y as isize)).wrapping_add(x);
+        self.samples[usize::from(self.pixels[place])]
     }
 
     /// How many tiles follow each that are like it, for what is looked along with one step again and again.
     pub fn ahead(&self, step: [f64; 2]) -> Ahead {
         let (across, way) = (self.across.max(1), way_of(fixed(step)));
-        let mut ahead = vec![0u8; self.reaches.len()];
-        // What is of several states is never leapt from, and mostly one of two says that all around it is like it.
-        let is_like = |own: usize, next: usize| match [own, next].map(|tile| self.reaches[tile]) {
-            [0, _] | [_, 0] => false,
-            [1, 1] => self.state(own) == self.state(next),
-            _ => true,
-        };
-        let mut visit = |own: usize, next: usize| {
-            if is_like(own, next) {
-                ahead[own] = ahead[next].saturating_add(1);
+        let mut ahead = vec![0; self.tiles.len()];
+        let more =
+            |[own, next]: [u8; 2], follow: u8| if (own ^ next) & STATES == 0 { follow.saturating_add(1) } else { 0 };
+        if way % 2 == 0 {
+            for (tiles, ahead) in self.tiles.chunks(across).zip(ahead.chunks_mut(across)) {
+                let pairs = (1..tiles.len()).map(|n| [n - 1, n]);
+                let mut visit = |own: usize, next: usize| ahead[own] = more([tiles[own], tiles[next]], ahead[next]);
+                if way == 0 {
+                    pairs.rev().for_each(|[left, right]| visit(left, right));
+                } else {
+                    pairs.for_each(|[left, right]| visit(right, left));
+                }
+            }
+            return Ahead(ahead);
+        }
+        let visit = |upper: usize| {
+            let (below, above) = ahead.split_at_mut(upper);
+            let rows = below[upper - across..].iter_mut().zip(&mut above[..across]);
+            let tiles = self.tiles[upper - across..].iter().zip(&self.tiles[upper..]);
+            if way == 1 {
+                rows.zip(tiles).for_each(|((low, high), (own, next))| *low = more([*own, *next], *high));
+            } else {
+                rows.zip(tiles).for_each(|((low, high), (own, next))| *high = more([*own, *next], *low));
             }
         };
-        let count = self.reaches.len();
-        let rows = (0..count).step_by(across);
-        match way {
-            0 => rows.for_each(|row| (row + 1..row + across).rev().for_each(|next| visit(next - 1, next))),
-            1 => (across..count).rev().for_each(|next| visit(next - across, next)),
-            2 => rows.for_each(|row| (row + 1..row + across).for_each(|own| visit(own, own - 1))),
-            _ => (across..count).for_each(|own| visit(own, own - across)),
+        let uppers = (0..self.tiles.len()).step_by(across).skip(1);
+        if way == 1 {
+            uppers.rev().for_each(visit);
+        } else {
+            uppers.for_each(visit);
         }
         Ahead(ahead)
-    }
-
-    /// What a sample of a tile is that is all of one state.
-    fn state(&self, tile: usize) -> u8 {
-        self.samples[usize::from(self.rows[tile / self.across * SIDE][tile % self.across * SIDE])]
     }
 
     /// Points, in pixels of the grid, that have all between them that was seen of the map; none where nothing was.
@@ -129,32 +157,39 @@ impl<'a> Look<'a> {
                 let place = after(starts[0], step, n * PER);
                 let [x, y] = place.map(|p| (p >> BITS) as usize);
                 let tile = y / SIDE * self.across + x / SIDE;
-                let leap = alike.samples(place, self.reaches[tile], ahead.of(tile)) / PER;
+                let leap = alike.samples(place, self.tiles[tile] >> BITS_OF_STATES, ahead.of(tile)) / PER;
                 if leap > 0 {
                     let end = all.end.min(n + leap);
-                    cells[n..end].fill(whole * self.samples[usize::from(self.rows[y][x])]);
+                    cells[n..end].fill(whole * self.sample([x, y]));
                     n = end;
                     continue;
                 }
             }
             let end = if is_inside { all.end.min(n + SIDE.div_ceil(PER)) } else { n + 1 };
-            cells[n..end].fill(0);
-            for start in starts {
-                self.add::<PER>(after(start, step, n * PER), step, &mut cells[n..end]);
+            let places = starts.map(|start| after(start, step, n * PER));
+            if is_inside {
+                self.add_up::<PER, true>(places, step, &mut cells[n..end]);
+            } else {
+                self.add_up::<PER, false>(places, step, &mut cells[n..end]);
             }
             n = end;
         }
     }
 
-    /// Adds to each cell what lies at so many samples of a lane: by itself, so that all that it goes by is at hand.
+    /// Sums up in each cell what lies at so many samples of each lane, which may be known to lie on the map: by itself, so
+    /// that all that it goes by is at hand.
     #[inline(never)]
-    fn add<const PER: usize>(&self, mut place: [i64; 2], step: [i64; 2], cells: &mut [u8]) {
-        for cell in cells {
-            for _ in 0..PER {
-                let [x, y] = place.map(|p| (p >> BITS) as usize);
-                let pixel = self.rows.get(y).and_then(|row| row.get(x));
-                *cell += pixel.map_or(BLOCKED, |&value| self.samples[usize::from(value)]);
-                place = [place[0] + step[0], place[1] + step[1]];
+    fn add_up<const PER: usize, const INSIDE: bool>(&self, places: [[i64; 2]; PER], step: [i64; 2], cells: &mut [u8]) {
+        for (lane, mut place) in places.into_iter().enumerate() {
+            for cell in &mut *cells {
+                let mut sum = if lane == 0 { 0 } else { *cell };
+                for _ in 0..PER {
+                    let [x, y] = place.map(|p| (p >> BITS) as usize);
+                    let is_on_map = INSIDE || x < self.size[0] && y < self.size[1];
+                    sum += if is_on_map { self.sample([x, y]) } else { BLOCKED };
+                    place = [place[0] + step[0], place[1] + step[1]];
+                }
+                *cell = sum;
             }
         }
     }
@@ -179,7 +214,7 @@ impl<'a> Look<'a> {
             let mut place = after(start, step, n);
             let [x, y] = place.map(|p| (p >> BITS) as usize);
             let tile = y / SIDE * self.across + x / SIDE;
-            let leap = alike.samples(place, self.reaches[tile], ahead.of(tile));
+            let leap = alike.samples(place, self.tiles[tile] >> BITS_OF_STATES, ahead.of(tile));
             if leap > 0 {
                 let end = on_map.end.min(n + leap);
                 if self.stands([x, y]) {
@@ -202,16 +237,15 @@ impl<'a> Look<'a> {
     }
 
     /// True where something stands on a pixel of the map.
-    fn stands(&self, [x, y]: [usize; 2]) -> bool {
-        self.samples[usize::from(self.rows[y][x])] == OCCUPIED
+    fn stands(&self, pixel: [usize; 2]) -> bool {
+        self.sample(pixel) == OCCUPIED
     }
 
     /// Of so many samples those that lie on the map.
     fn on_map(&self, start: [i64; 2], step: [i64; 2], count: usize) -> Range<usize> {
-        let size = [self.width, self.rows.len()];
         let (mut from, mut to) = (0, count as i64);
         for axis in [0, 1] {
-            let (first, last) = within(start[axis], step[axis], (size[axis] as i64) << BITS);
+            let (first, last) = within(start[axis], step[axis], (self.size[axis] as i64) << BITS);
             (from, to) = (from.max(first), to.min(last));
         }
         let from = from.min(count as i64) as usize;
@@ -235,6 +269,12 @@ fn fixed(p: [f64; 2]) -> [i64; 2] {
 /// Where a lane's sample lies.
 fn after(start: [i64; 2], step: [i64; 2], samples: usize) -> [i64; 2] {
     [0, 1].map(|axis| start[axis] + samples as i64 * step[axis])
+}
+
+/// A tile in a byte, of which it is known so far at most how far around it all is alike.
+fn coded(reach: u8, states: u8) -> u8 {
+    let state = if states.is_power_of_two() { states.trailing_zeros() as u8 } else { STATES };
+    reach.min(u8::MAX >> BITS_OF_STATES) << BITS_OF_STATES | state
 }
 
 /// How many tiles are known to follow each that are like it.
@@ -280,8 +320,9 @@ impl Alike {
         if reach == 0 {
             return 0;
         }
+        // What is alike ahead goes on from the own tile, and where nothing else around is alike it is the farther.
         let beyond = ((usize::from(reach) - 1) * SIDE) as f32;
-        let around = self.within(place, [[beyond; 2]; 2]);
+        let around = if reach > 1 || ahead == 0 { self.within(place, [[beyond; 2]; 2]) } else { 0 };
         if ahead < reach {
             return around;
         }
