@@ -200,46 +200,50 @@ impl<'a> Line<'a> {
 
     /// The gaps beside which edge pixels lie along the line, at some steps in ascending order.
     fn gaps(&self, lined: &[i64], widest: f64) -> Vec<Bar> {
-        let mut bars = Vec::new();
-        let pixels = |metres: f64| self.raster.pixels(metres);
+        let [crack, widest, wall] = [CRACK, widest, WALL].map(|metres| self.raster.pixels(metres));
         let near = self.near();
-        let jamb = pixels(JAMB).max(1.0) as i64;
-        let (from, to) = self.span();
+        let jamb = self.raster.pixels(JAMB).max(1.0) as i64;
+        let least = (LINED * jamb as f64).ceil() as usize;
+        let span = self.span();
         // Farther from such a pixel no step bears on a gap beside it.
-        let reach = jamb + pixels(widest).ceil() as i64 + pixels(WALL).ceil() as i64 + 2;
+        let reach = jamb + widest.ceil() as i64 + wall.ceil() as i64 + 2;
+        let mut bars = Vec::new();
         for together in lined.chunk_by(|one, next| next - one <= 2 * reach) {
             let (first, last) = (together[0] - reach, together[together.len() - 1] + reach);
-            let (from, to) = (from.max(first), to.min(last + 1));
-            let free: Vec<bool> = (from..to).map(|step| self.is_free(step, near)).collect();
-            let on_line = |from: i64, to: i64| {
-                let count = together.partition_point(|&s| s < to) - together.partition_point(|&s| s < from);
-                count as f64 >= LINED * jamb as f64
-            };
-            for three in runs(&free).windows(3) {
-                let [before, gap, after] = [three[0], three[1], three[2]].map(|(a, b)| (b - a) as f64);
-                let (start, end) = (three[1].0 as i64 + from, three[1].1 as i64 + from);
-                if free[three[1].0]
-                    && (pixels(CRACK)..=pixels(widest)).contains(&gap)
-                    && before.max(after) >= pixels(WALL)
-                    && (on_line(start - jamb, start) || on_line(end, end + jamb))
-                {
-                    bars.push(Bar { ends: [self.place(start), self.place(end - 1)] });
+            let (from, to) = (span.0.max(first), span.1.min(last + 1));
+            // A step is only looked at where a gap may begin or end there, or may lie there.
+            let mut known: Vec<Option<bool>> = vec![None; (to - from).max(0) as usize];
+            let mut is_free =
+                |step: i64| *known[(step - from) as usize].get_or_insert_with(|| self.is_free(step, near));
+            let mut gaps: Vec<[i64; 2]> = Vec::new();
+            let (mut starts, mut ends) = (from + 1, from + 1);
+            for pixels in together.windows(least).filter(|pixels| pixels[least - 1] - pixels[0] < jamb) {
+                // Behind so many pixels one begins, and before them one ends.
+                let (low, high) = (pixels[0], pixels[least - 1]);
+                for start in starts.max(high + 1)..to.min(low + jamb + 1) {
+                    if is_free(start) && !is_free(start - 1) {
+                        let end = (start + 1..to.min(start + 1 + widest as i64)).find(|&step| !is_free(step));
+                        gaps.extend(end.map(|end| [start, end]));
+                    }
                 }
+                for end in ends.max(high + 1 - jamb)..to.min(low + 1) {
+                    if !is_free(end) && is_free(end - 1) {
+                        let before = (from.max(end - 1 - widest as i64)..end - 1).rev().find(|&step| !is_free(step));
+                        gaps.extend(before.map(|before| [before + 1, end]));
+                    }
+                }
+                (starts, ends) = (starts.max(low + jamb + 1), ends.max(low + 1));
             }
+            gaps.sort_unstable();
+            gaps.dedup();
+            gaps.retain(|&[start, end]| {
+                let most = wall.ceil() as usize;
+                let before = (from..start).rev().take(most).take_while(|&step| !is_free(step)).count();
+                let mut after = || (end..to).take(most).take_while(|&step| !is_free(step)).count();
+                (end - start) as f64 >= crack && (before == most || after() == most)
+            });
+            bars.extend(gaps.into_iter().map(|[start, end]| Bar { ends: [self.place(start), self.place(end - 1)] }));
         }
         bars
     }
-}
-
-/// Runs of equal flags: from, to.
-fn runs(flags: &[bool]) -> Vec<(usize, usize)> {
-    let mut runs = Vec::new();
-    let mut from = 0;
-    for n in 1..=flags.len() {
-        if n == flags.len() || flags[n] != flags[from] {
-            runs.push((from, n));
-            from = n;
-        }
-    }
-    runs
 }
