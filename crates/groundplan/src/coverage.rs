@@ -6,7 +6,7 @@ use crate::bits::{self, WORD, lowest};
 use crate::directions::Directions;
 use crate::ends::{around, sorted};
 use crate::gradients::Gradients;
-use crate::grid::{Frame, rounded, tidy};
+use crate::grid::{Frame, nearest, tidy, whole};
 use crate::lines::Lines;
 use crate::on_line::OnLine;
 use crate::parameters::Parameters;
@@ -132,7 +132,7 @@ impl<'a> Coverage<'a> {
                         }
                         for bin in [place - COVER_PIXELS, place, place + COVER_PIXELS] {
                             // All pixels of the map lie within.
-                            let bin = (bin as usize).clamp(bins.start, bins.end - 1) - bins.start;
+                            let bin = whole(bin).clamp(bins.start, bins.end - 1) - bins.start;
                             bits[bin / WORD] |= 1 << (bin % WORD);
                         }
                     }
@@ -162,7 +162,7 @@ impl<'a> Coverage<'a> {
                 });
                 let [from, to] = sorted(ends);
                 // Whole bins within; a shorter edge is judged by the bin that its middle lies in.
-                let (mut first, mut last) = (rounded(from) as usize, rounded(to) as usize);
+                let (mut first, mut last) = (nearest(from), nearest(to));
                 if first == last {
                     first = f64::midpoint(from, to) as usize;
                     last = first + 1;

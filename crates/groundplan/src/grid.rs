@@ -128,7 +128,9 @@ impl Frame {
 #[must_use]
 pub fn undirected(angle: f64) -> f64 {
     use std::f64::consts::{FRAC_PI_2, PI};
-    let turned = (angle + FRAC_PI_2).rem_euclid(PI) - FRAC_PI_2;
+    let turned = angle + FRAC_PI_2;
+    // Mostly it is one already.
+    let turned = if (0.0..PI).contains(&turned) { turned } else { turned.rem_euclid(PI) } - FRAC_PI_2;
     if turned >= FRAC_PI_2 { -FRAC_PI_2 } else { turned }
 }
 
@@ -236,6 +238,12 @@ pub(crate) fn rounded(value: f64) -> f64 {
 /// step less for most machines than 64 are.
 pub(crate) fn whole(value: f64) -> usize {
     value as u32 as usize
+}
+
+/// The nearest whole number as an index, of what is not below zero: as [`rounded`] has it.
+pub(crate) fn nearest(value: f64) -> usize {
+    let whole = value as u32;
+    whole as usize + usize::from(value - f64::from(whole) >= 0.5)
 }
 
 /// An angle rounded to a billionth of a radian: a micrometre at a kilometre.

@@ -12,6 +12,7 @@ use super::sweep::Sweep;
 use super::turned::Turned;
 use super::{Evidence, pieces};
 use crate::ends::overlap;
+use crate::grid::whole;
 use std::cell::OnceCell;
 use std::ops::Range;
 
@@ -232,7 +233,7 @@ impl<'a> Seen<'a> {
 
     /// Occupied samples, a row to either side included.
     fn between(&self, [low, high]: [f64; 2]) -> f64 {
-        let row = |v: f64| ((v - self.view.start[1]) / self.view.cell).max(0.0) as usize;
+        let row = |v: f64| whole((v - self.view.start[1]) / self.view.cell);
         let last = self.below.len() - 1;
         (self.below[(row(high) + 2).min(last)] - self.below[row(low).saturating_sub(1).min(last)]) as f64
     }

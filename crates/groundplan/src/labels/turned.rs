@@ -13,7 +13,7 @@ use super::sums::{Cells, Known, Told, What, are_many};
 use super::{Evidence, Scene};
 use crate::bits::Bits;
 use crate::ends::wider;
-use crate::grid::rounded;
+use crate::grid::{nearest, whole};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -281,7 +281,7 @@ impl Turned {
 
     /// The column that holds place `u`, the first or last when it lies outside.
     pub fn column(&self, u: f64) -> usize {
-        (((u - self.start[0]) / self.cell).max(0.0) as usize).min(self.size[0] - 1)
+        whole((u - self.start[0]) / self.cell).min(self.size[0] - 1)
     }
 
     /// Place along of a column's lower border.
@@ -296,7 +296,7 @@ impl Turned {
 
     /// The cells across between two places: from, to.
     pub(super) fn cells(&self, low: f64, high: f64) -> (usize, usize) {
-        let at = |v: f64| rounded(((v - self.start[1]) / self.cell).clamp(0.0, self.size[1] as f64)) as usize;
+        let at = |v: f64| nearest(((v - self.start[1]) / self.cell).clamp(0.0, self.size[1] as f64));
         (at(low), at(high).max(at(low)))
     }
 }

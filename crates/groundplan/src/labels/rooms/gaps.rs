@@ -109,8 +109,11 @@ fn lined(evidence: &Evidence, raster: &Raster, angle: f64, offsets: &[f64]) -> V
         }
         let [x, y] = pixel.map(|p| f64::from(p) + 0.5);
         let (u, v) = (x * cos + y * sin, y * cos - x * sin);
+        // Rounded down, without the call that it is on machines that may lack the instruction.
+        let place = u / raster.side as f64;
+        let step = place as i64 - i64::from(place < place as i64 as f64);
         for line in lines.at(v) {
-            steps[line].push((u / raster.side as f64).floor() as i64);
+            steps[line].push(step);
         }
     });
     for list in &mut steps {
