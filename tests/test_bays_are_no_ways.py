@@ -168,3 +168,37 @@ def test_ways_lead_through_all_rows_though_a_bay_beside_one_of_them_is_empty(bes
     for r, row in enumerate(rows):
         fill(row, starts, [(r, n) not in empty for n in range(12)])
     assert ways_across(picture) == pytest.approx([3.0, 3.0, *HEADS], abs=0.25)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("width", [50, 54])
+def test_one_gap_in_each_full_row_is_a_way_be_some_of_them_in_line(width: int, seed: int) -> None:
+    # Pallets that do not stand quite in line, in bays of 2.7 m; after so many bays of each row a gap.
+    draws = np.random.default_rng(seed)
+    gaps, bay, count = (3, 3, 3, 3, 9, 6, 1), 54, 10
+    picture, rows = hall(len(gaps), 22, count * bay + width)
+    for row, gap in zip(rows, gaps, strict=True):
+        row[:] = 254
+        for x in (n * bay + (width if n >= gap else 0) for n in range(count)):
+            for at in (2, bay // 2 + 1):
+                left, right, low, high = draws.integers(0, 3, 4).tolist()
+                row[1 + low : -1 - high, x + at + left : x + at + bay // 2 - 3 - right] = 0
+            for post in (x, x + bay - 2):
+                row[[0, 1, -2, -1], post : post + 2] = 0
+        for end in (0, gap * bay - 2, gap * bay + width, count * bay + width - 2):
+            row[:, end : end + 2] = 0
+    assert len(ways_across(picture)) == 2 + 4
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_mesh_behind_empty_bays_lets_no_way_through_at_the_wall(seed: int) -> None:
+    # The rows reach the wall on the right; of each row's bays the last one is empty, before a mesh along all of it.
+    draws = np.random.default_rng(seed)
+    picture, rows = hall(5, 22, 14 * BAY + 2)
+    picture[:, 20 + END + 14 * BAY + 2 :] = 205
+    picture[18:-18, 20 + END + 14 * BAY + 2 :][:, :2] = 0
+    for row in rows:
+        fill(row, range(0, 14 * BAY, BAY), (*(draws.random(13) < 0.5).tolist(), False))
+        row[:, -4:] = 254
+        row[-2:] = 0
+    assert ways_across(picture) == pytest.approx(HEADS[:1], abs=0.3)

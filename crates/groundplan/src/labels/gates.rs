@@ -16,8 +16,9 @@ use super::turned::Turned;
 use super::widths::Widths;
 use crate::bands::flat_map_each;
 use crate::bits::Bits;
-use crate::ends::{around, holds, overlap, wider};
+use crate::ends::{around, both, holds, overlap, wider};
 use std::cell::LazyCell;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
@@ -49,7 +50,10 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     }
     let mut as_bays: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, &seen)).collect();
     let through = Through::new(views, seen);
-    let in_each_row = through.in_each_row();
+    // A way that is known in one row tells of those in the next.
+    let whole = uncut(views, rows);
+    let whole = whole.as_ref().map(|rows| Through::new(views, self::seen(evidence, look, views, strips, rows, rows)));
+    let in_each_row = whole.as_ref().unwrap_or(&through).in_each_row();
     let mut as_a_bay = Vec::new();
     for (gate, is_as_a_bay) in through.at_walls(strips, &placed) {
         let found = if is_as_a_bay { &mut as_a_bay } else { &mut gates };
@@ -96,6 +100,18 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     as_bays.extend(as_wide_as_others(views, strips, &ways, in_each_row));
     as_bays.retain(|gate| !ways.iter().any(|way| is_in(gate, way)));
     Gates { ways, as_bays: in_line(as_bays) }
+}
+
+/// The rows as they are where nothing leads across them, of directions of which bays are known; nothing where none is cut.
+fn uncut(views: &[Turned], rows: &[Row]) -> Option<Vec<Row>> {
+    let mut whole: BTreeMap<_, Row> = BTreeMap::new();
+    let mut is_cut = false;
+    for row in rows.iter().filter(|row| row.between.is_some() && views[row.direction].pitch.is_some()) {
+        let known = whole.entry((row.direction, row.between)).or_insert_with(|| row.clone());
+        is_cut |= known != row;
+        (known.along, known.across) = (both(known.along, row.along), both(known.across, row.across));
+    }
+    is_cut.then(|| whole.into_values().collect())
 }
 
 /// Those of some ways, one like another in each row, that are as wide as what leads through all rows of their place between

@@ -28,8 +28,10 @@ const BASE: usize = 12;
 const CONTRAST: f64 = 8.0;
 /// A pitch is a whole number of so many parts of a step.
 const PARTS: f64 = 2.0;
-/// Of several lags the shortest that is this much of the strongest is the pitch: the others are its multiples.
+/// Of several lags the shortest that is this much of the strongest is the pitch: the others are its multiples. Of such as bays
+/// may have it is nearly as strong, or goods recur there, of which several stand in a bay.
 const FUNDAMENTAL: f64 = 0.7;
+const GOODS: f64 = 0.9;
 /// No bay is longer than beams are, metres: what is told to be longer is two of them, or one and a half with a leg in each
 /// one's middle. Where most are full few posts are seen from one to the next: the one stands out by the other factor.
 pub const LONGEST: f64 = 3.9;
@@ -95,13 +97,24 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
         .collect();
     let top = |n: usize| found[n.saturating_sub(TOP)..].iter().take(2 * TOP + 1).all(|other| other.1 <= found[n].1);
     let tops: Vec<usize> = (0..found.len()).filter(|&n| found[n].1 >= CONTRAST && top(n)).collect();
-    let most = tops.iter().map(|&n| found[n].0).fold(0.0, f64::max);
-    let pitch = first + tops.into_iter().find(|&n| found[n].0 >= FUNDAMENTAL * most)?;
+    let tops: Vec<(usize, f64)> = tops.into_iter().map(|n| (first + n, found[n].0)).collect();
+    let pitch = shortest(&tops)?;
     let clear = |lag: usize| {
         let [once, twice] = all[lag - first];
         once.1.min(twice.1)
     };
     Some(between_steps(&sums, one_bay(pitch, clear)) * STEP)
+}
+
+/// Of lags and how many pairs are so far apart the one from post to post, or some whole times that.
+fn shortest(tops: &[(usize, f64)]) -> Option<usize> {
+    let strong = |tops: &[(usize, f64)], least: f64| {
+        let most = tops.iter().map(|top| top.1).fold(0.0, f64::max);
+        tops.iter().copied().filter(|top| top.1 >= least * most).collect::<Vec<_>>()
+    };
+    let all = strong(tops, FUNDAMENTAL);
+    let bays: Vec<_> = all.iter().copied().filter(|top| top.0 as f64 * STEP <= LONGEST).collect();
+    strong(&bays, GOODS).first().or(all.first()).map(|top| top.0)
 }
 
 /// The lag of one bay, where that of some is longer than any; by how clearly each lag stands out.
@@ -205,4 +218,33 @@ fn is_face(one: &Speck, other: &Speck) -> bool {
     let columns = (other.column + 1 - one.column) as f64;
     let [left, right] = [0, 1].map(|side| (other.sums[1][side] - one.sums[0][side]) / columns);
     left <= FACE.0 && right >= FACE.1 || right <= FACE.0 && left >= FACE.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The pitch of some lags, metres, with as many pairs.
+    fn pitch(tops: &[(f64, f64)]) -> f64 {
+        let lags: Vec<_> = tops.iter().map(|&(lag, pairs)| ((lag / STEP).round() as usize, pairs)).collect();
+        shortest(&lags).unwrap() as f64 * STEP
+    }
+
+    #[test]
+    fn posts_recur_at_one_bay_and_goods_at_a_part_of_it() {
+        for (tops, bay) in [
+            // Two, three, four and five pallets of 1.2 m, three of which stand in a bay.
+            (&[(2.4, 645.0), (3.55, 841.0), (4.7, 563.0), (5.9, 628.0)][..], 3.55),
+            // Half a bay, one, and one and a half.
+            (&[(1.7, 1367.0), (3.45, 1635.0), (5.2, 968.0)], 3.45),
+            // One and two.
+            (&[(2.8, 415.0), (5.6, 318.0)], 2.8),
+            (&[(1.8, 400.0), (3.6, 430.0)], 1.8),
+            // Of most bays every second post alone was seen.
+            (&[(2.7, 340.0), (5.55, 938.0)], 5.55),
+        ] {
+            assert!((pitch(tops) - bay).abs() < 1e-9, "{tops:?}");
+        }
+        assert_eq!(shortest(&[]), None);
+    }
 }

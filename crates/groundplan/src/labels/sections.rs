@@ -255,12 +255,12 @@ impl<'a> Columns<'a> {
         let width = self.place(to) - self.place(from);
         (WIDTH.0..=WIDTH.1).contains(&(width + between_cells))
             && self.share(from, to) <= CLUTTER
-            && !self.is_walled(from, to)
+            && !self.is_walled([self.place(from), self.place(to)])
     }
 
-    /// True when something stands in most of the columns between two, be it ever so little: a wall joins what is beside them.
-    fn is_walled(&self, from: usize, to: usize) -> bool {
-        let columns = self.view.column(self.place(from))..self.view.column(self.place(to));
+    /// True when something stands in most of the columns of a stretch, be it ever so little: a wall joins what is beside it.
+    pub fn is_walled(&self, [from, to]: [f64; 2]) -> bool {
+        let columns = self.view.column(from)..self.view.column(to);
         let [low, high] = wider(self.row.across, FACE);
         let stands = self.view.some_occupied(columns, low, high);
         stands.iter().filter(|share| **share > 0.0).count() as f64 > TAKEN * stands.len() as f64

@@ -243,7 +243,12 @@ impl<'a> Through<'a> {
             (true, false) if self.rows[common.rows[0]].is_as_bays(common.ends) => SOME,
             (true, false) => OTHER,
         };
-        common.chance < limit
+        common.chance < limit && !self.is_walled(common)
+    }
+
+    /// True when a wall runs along one of its rows there, as behind a rack of which only that is left.
+    fn is_walled(&self, common: &Common) -> bool {
+        common.rows.iter().any(|&n| self.rows[n].columns.is_walled(self.rows[n].stretch(common.ends)))
     }
 
     /// True when racks end on both its sides in each of its rows.
