@@ -38,9 +38,9 @@ class Plan:
         return self.canvas.picture
 
 
-def joined_by_a_bend(turn: float, leg: float) -> Picture:
+def joined_by_a_bend(turn: float, leg: float, wall: float | None = None) -> Picture:
     """A hall of four aisles, and one of three that is turned; a passage leads from the one, bends, and after so many
-    pixels between walls opens into the side of the other's last aisle."""
+    pixels between walls opens into the side of the other's last aisle. A thin wall may close it, askew by so much."""
     floors, racks = Plan(1250, 1000), Plan(1250, 1000)
     floors.floor((20, 340), 0, 400, 360)
     for y in (400, 500, 600):
@@ -59,6 +59,10 @@ def joined_by_a_bend(turn: float, leg: float) -> Picture:
     floors.floor(at(170, 300), turn, 60, 20 + leg + 30 * np.tan(np.radians(90 - turn) / 2))
     for v in (80, 200):
         racks.floor(at(60, v), turn, 380, 40)
+    if wall is not None:
+        x, y = at(200, 320 + leg / 2)
+        askew = np.radians(turn + wall)
+        racks.bars.append(((x - 50 * np.cos(askew), y - 50 * np.sin(askew)), turn + wall, 100, 3))
     return floors.drawn(racks)
 
 
@@ -69,3 +73,16 @@ def test_a_passage_leads_round_its_bend_into_the_wing(turn: float, leg: float) -
     assert sorted(junction["type"] for junction in junctions) == ["L"] * 9 + ["T"] * 8
     bends = [junction for junction in junctions if np.hypot(*np.subtract(junction["at"], (33, 26))) < 0.75]
     assert [junction["type"] for junction in bends] == ["L"]
+
+
+@pytest.mark.parametrize("wall", [0, 30, 45])
+def test_a_wall_closes_what_follows_a_bend_be_it_askew(wall: float) -> None:
+    survey = groundplan.survey(joined_by_a_bend(40, 90, wall), resolution=RESOLUTION)
+    beyond = np.array((33, 26)) - 4.5 * np.array((np.cos(np.radians(130)), np.sin(np.radians(130))))
+    for way in survey.of_kind("corridor"):
+        start, end = np.array(way["axis"])
+        along = (end - start) / np.linalg.norm(end - start)
+        # None leads along the leg up to the wing.
+        is_along = abs(along @ np.array((np.cos(np.radians(130)), np.sin(np.radians(130))))) > 0.99
+        near = start + np.clip((beyond - start) @ along, 0, np.linalg.norm(end - start)) * along
+        assert not is_along or np.linalg.norm(near - beyond) > 1

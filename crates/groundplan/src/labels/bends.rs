@@ -108,7 +108,9 @@ impl Bend<'_> {
         let is_way = off <= MIDDLE
             && holds(WIDTHS.map(|share| share * own.width()), width)
             && is_free(walled, wider(across, -WALL * width))
-            && !barriers::among(view, across, columns(view, [u, ends])).any();
+            && !barriers::among(view, across, columns(view, [u, ends])).any()
+            // A wall askew to it reaches beyond the near side of the way that it leads to.
+            && barriers::stops(view, across, columns(view, [begins, middle])).is_empty();
         let way = || stretches::ragged(view, sorted([u, ends]), across, (ends - u).abs());
         is_way.then(|| Found { led: Led { way: way(), middles: sorted([u, middle]) }, off })
     }
