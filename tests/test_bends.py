@@ -60,9 +60,10 @@ def joined_by_a_bend(turn: float, leg: float, wall: float | None = None) -> Pict
     for v in (80, 200):
         racks.floor(at(60, v), turn, 380, 40)
     if wall is not None:
-        x, y = at(200, 320 + leg / 2)
+        left, low = at(200, 320 + leg / 2)
         askew = np.radians(turn + wall)
-        racks.bars.append(((x - 50 * np.cos(askew), y - 50 * np.sin(askew)), turn + wall, 100, 3))
+        start = (float(left - 50 * np.cos(askew)), float(low - 50 * np.sin(askew)))
+        racks.bars.append((start, turn + wall, 100, 3))
     return floors.drawn(racks)
 
 
