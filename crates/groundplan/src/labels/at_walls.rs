@@ -102,7 +102,7 @@ fn before(row: &Row, side: usize) -> [f64; 2] {
 /// True when goods stand in a row and a wall behind it: it shows between them and beyond the row's ends, and nothing
 /// shows behind it.
 fn hides_wall(view: &Turned, line: usize, side: usize, row: &Row) -> bool {
-    let columns = view.column(row.along[0])..view.column(row.along[1]) + 1;
+    let columns = view.columns(row.along);
     let far = row.across[side];
     let beyond =
         |metres: [f64; 2]| if side == 1 { metres.map(|m| far + m) } else { [far - metres[1], far - metres[0]] };

@@ -32,8 +32,13 @@ const WALL: f64 = 0.1;
 
 /// The ways with those that they lead to round a bend; none where there are no such.
 pub fn with(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Option<Vec<Strip>> {
+    // One that it leads along, one that it turns to and one of the way that it meets.
+    if views.len() < 3 {
+        return None;
+    }
     let mut known = Known::new(views, strips);
     let placed = placed(views, strips.iter().map(Strip::place));
+    let widest = corridors::widest(strips);
     for (n, met) in of_each(meetings, strips.len()).into_iter().enumerate() {
         let own = &strips[n];
         let from = &views[own.direction];
@@ -42,8 +47,9 @@ pub fn with(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Option<
                 continue;
             }
             let legs = views.iter().flat_map(|view| [-1.0, 1.0].map(|to| (view, to)));
-            let bends =
-                legs.filter_map(|(view, to)| Bend { views, strips, placed: &placed, own, from, side, view, to }.best());
+            let bends = legs.filter_map(|(view, to)| {
+                Bend { views, strips, placed: &placed, widest, own, from, side, view, to }.best()
+            });
             if let Some(found) = bends.min_by(|one, two| one.off.total_cmp(&two.off)) {
                 known.add(found.led);
             }
@@ -57,6 +63,8 @@ struct Bend<'a> {
     views: &'a [Turned],
     strips: &'a [Strip],
     placed: &'a [Beside],
+    /// Of all strips.
+    widest: f64,
     own: &'a Strip,
     from: &'a Turned,
     side: usize,
@@ -70,13 +78,13 @@ struct Found {
     off: f64,
 }
 
-impl Bend<'_> {
+impl<'a> Bend<'a> {
     /// The one of which the middle lies best.
     fn best(&self) -> Option<Found> {
-        let cos = libm::cos(self.view.angle - self.from.angle) * self.to * sign(self.side);
-        let is_askew = |one: &Turned, other: &Turned, least| libm::sin(one.angle - other.angle).abs() >= least;
-        let leads_to = |other: &Turned| is_askew(other, self.from, LEAST_SINE) && is_askew(other, self.view, ASKEW);
-        if !is_askew(self.view, self.from, ASKEW) || cos < -ASKEW || !self.views.iter().any(leads_to) {
+        let Self { view, from, .. } = *self;
+        let cos = libm::cos(view.angle - from.angle) * self.to * sign(self.side);
+        let may_meet = |other: &Turned| other.sine(from) >= LEAST_SINE && other.sine(view) >= ASKEW;
+        if view.sine(from) < ASKEW || cos < -ASKEW || !self.views.iter().any(may_meet) {
             return None;
         }
         let tried = (2.0 * NEAR * self.own.width() / STEP) as usize;
@@ -94,25 +102,27 @@ impl Bend<'_> {
         let begins = u + to * inner;
         let core = wider([v; 2], WIDTHS[0] / 4.0 * own.width());
         let is_free = |columns, [low, high]: [f64; 2]| view.mean_blocked(columns, low, high) <= CLUTTER;
-        if !is_free(columns(view, [u, begins + to * LENGTH[0]]), core) || !self.leads_to(turn) {
+        if !is_free(view.columns(sorted([u, begins + to * LENGTH[0]])), core) || !self.leads_to(turn) {
             return None;
         }
         let (ends, middle) = self.ahead([u, v])?;
-        if !holds(LENGTH, (ends - begins) * to) || !is_free(columns(view, [u, ends]), core) {
+        if !holds(LENGTH, (ends - begins) * to) || !is_free(view.columns(sorted([u, ends])), core) {
             return None;
         }
-        let walled = columns(view, [begins, ends]);
+        let walled = view.columns(sorted([begins, ends]));
         let across = self.sides(v, walled.clone())?;
         let width = across[1] - across[0];
         let off = (f64::midpoint(across[0], across[1]) - v).abs() / width;
         let is_way = off <= MIDDLE
             && holds(WIDTHS.map(|share| share * own.width()), width)
             && is_free(walled, wider(across, -WALL * width))
-            && !barriers::among(view, across, columns(view, [u, ends])).any()
+            && !barriers::among(view, across, view.columns(sorted([u, ends]))).any()
             // A wall askew to it reaches beyond the near side of the way that it leads to.
-            && barriers::stops(view, across, columns(view, [begins, middle])).is_empty();
-        let way = || stretches::ragged(view, sorted([u, ends]), across, (ends - u).abs());
-        is_way.then(|| Found { led: Led { way: way(), middles: sorted([u, middle]) }, off })
+            && barriers::stops(view, across, view.columns(sorted([begins, middle]))).is_empty();
+        is_way.then(|| {
+            let way = stretches::ragged(view, sorted([u, ends]), across, (ends - u).abs());
+            Found { led: Led { way, middles: sorted([u, middle]) }, off }
+        })
     }
 
     /// True when nothing stands in the known way from its end to a place along.
@@ -120,34 +130,28 @@ impl Bend<'_> {
         let end = self.own.along[self.side];
         let [low, high] = inner(self.own);
         (turn - end) * sign(self.side) <= 0.0
-            || self.from.mean_blocked(columns(self.from, [end, turn]), low, high) <= CLUTTER
+            || self.from.mean_blocked(self.from.columns(sorted([end, turn])), low, high) <= CLUTTER
     }
 
     /// The near side and the middle, along, of the first way that one from a place leads to, unless that one runs as the
     /// known way does: then what lies between them is of a row.
     fn ahead(&self, [u, v]: [f64; 2]) -> Option<(f64, f64)> {
         let Self { view, to, .. } = *self;
-        let met_along = |other: &'_ Turned| {
-            let sine = libm::sin(other.angle - view.angle).abs();
-            if sine < ASKEW {
-                return None;
-            }
-            let farthest = u + to * (LENGTH[1] + corridors::widest(self.strips) / sine);
-            let ends = [u, farthest].map(|u| other.place(view.to_map([u, v])));
+        let met_along = |other: &'a Turned| {
+            let sine = other.sine(view);
+            let ends = [u, u + to * (LENGTH[1] + self.widest / sine)].map(|u| other.place(view.to_map([u, v])));
             let [along, across] = [0, 1].map(|axis| around(ends.iter().map(|end| end[axis])));
             let near = self.placed[other.direction].touching(along, across).into_iter().map(|n| &self.strips[n]);
-            let met = near.filter_map(|strip| {
+            near.filter_map(move |strip| {
                 let [there, middle] = view.crossing(other, v, strip.middle());
                 let side = middle - to * strip.width() / 2.0 / sine;
                 let is_met = strip != self.own && holds(strip.along, there) && (side - u) * to > 0.0;
-                is_met.then_some((side, middle, other.direction))
-            });
-            met.min_by(|one, two| (one.0 * to).total_cmp(&(two.0 * to)))
+                is_met.then_some((side, middle, other))
+            })
         };
-        let met = self.views.iter().filter_map(met_along).min_by(|one, two| (one.0 * to).total_cmp(&(two.0 * to)));
-        let (side, middle, direction) = met?;
-        let is_askew = libm::sin(self.views[direction].angle - self.from.angle).abs() >= LEAST_SINE;
-        is_askew.then_some((side, middle))
+        let met = self.views.iter().filter(|other| other.sine(view) >= ASKEW).flat_map(met_along);
+        let (side, middle, other) = met.min_by(|one, two| (one.0 * to).total_cmp(&(two.0 * to)))?;
+        (other.sine(self.from) >= LEAST_SINE).then_some((side, middle))
     }
 
     /// Both sides of a way about a middle, where walls run along both over some columns.
@@ -169,10 +173,4 @@ impl Bend<'_> {
         };
         across.iter().all(is_walled).then_some(across)
     }
-}
-
-/// The columns between two places along, whichever lies first.
-fn columns(view: &Turned, ends: [f64; 2]) -> Range<usize> {
-    let [low, high] = sorted(ends);
-    view.column(low)..view.column(high) + 1
 }

@@ -131,7 +131,7 @@ impl Lead<'_> {
     fn sides(&self) -> [f64; 2] {
         let [view, other] = self.views;
         let middle = f64::midpoint(self.row.across[0], self.row.across[1]);
-        let reach = self.strip.width() / 2.0 / libm::sin(other.angle - view.angle).abs();
+        let reach = self.strip.width() / 2.0 / other.sine(view);
         wider([view.crossing(other, middle, self.strip.middle())[1]; 2], reach)
     }
 

@@ -110,10 +110,7 @@ impl Behind<'_> {
             let outer = last.across[self.side];
             self.view.crossing(self.other, if self.side == 0 { outer - far } else { outer + far }, way.middle())
         };
-        let columns = |ends: [f64; 2]| {
-            let [from, to] = sorted(ends.map(|far| place(far)[0]));
-            self.other.column(from)..self.other.column(to) + 1
-        };
+        let columns = |ends: [f64; 2]| self.other.columns(sorted(ends.map(|far| place(far)[0])));
         let widest = self.parameters.labels_max_width.min(last.width() / family::LED_TO);
         let least = self.parameters.labels_min_width.max(last.width() * family::LED_TO);
         let is_outwards = place(reach)[0] > place(0.0)[0];
@@ -178,8 +175,8 @@ impl Behind<'_> {
     }
 
     /// True when nothing stands between two ways that lead to what was seen in part.
-    fn is_way(&self, [from, to]: [f64; 2], gap: [f64; 2]) -> bool {
-        let columns = self.view.column(from)..self.view.column(to) + 1;
+    fn is_way(&self, between: [f64; 2], gap: [f64; 2]) -> bool {
+        let columns = self.view.columns(between);
         let [low, high] = wider(gap, -SIDE);
         let taken = self.view.some_occupied(columns.clone(), low, high);
         let unseen = self.view.mean_blocked(columns.clone(), low, high);

@@ -142,7 +142,7 @@ pub fn find(evidence: &Evidence, views: &[Turned]) -> Ways {
 fn is_askew_in(views: &[Turned], one: &Strip, others: &[Strip], placed: &[Beside]) -> bool {
     let own = &views[one.direction];
     let middle = own.to_map([f64::midpoint(one.along[0], one.along[1]), one.middle()]);
-    let askew = |its: &&Turned| its.direction != own.direction && libm::sin(own.angle - its.angle).abs() < ASKEW;
+    let askew = |its: &&Turned| its.direction != own.direction && own.sine(its) < ASKEW;
     views.iter().filter(askew).any(|its| {
         let [u, v] = its.place(middle);
         let holds = |other: &Strip| holds(other.along, u) && holds(other.across, v);
@@ -153,9 +153,5 @@ fn is_askew_in(views: &[Turned], one: &Strip, others: &[Strip], placed: &[Beside
 /// Between the lines of posts of the rows that cross a direction, metres.
 pub fn pitches(views: &[Turned], view: &Turned) -> Vec<f64> {
     let others = views.iter().filter(|other| other.direction != view.direction);
-    let across = others.filter_map(|other| {
-        let sine = libm::sin(other.angle - view.angle).abs();
-        other.pitch.map(|pitch| pitch * sine)
-    });
-    across.collect()
+    others.filter_map(|other| other.pitch.map(|pitch| pitch * other.sine(view))).collect()
 }

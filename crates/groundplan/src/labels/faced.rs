@@ -19,7 +19,7 @@ pub fn whole(views: &[Turned], strips: &[Strip], racks: &[Row]) -> Vec<Strip> {
         let view = &views[strip.direction];
         let near = standing[strip.direction].touching(strip.along, wider(strip.across, SAME));
         let is_free = |[from, to]: [f64; 2]| {
-            let columns = view.column(from)..view.column(to) + 1;
+            let columns = view.columns([from, to]);
             let taken = view.some_occupied(columns.clone(), strip.across[0], strip.across[1]);
             let others = known[strip.direction].touching([from, to], strip.across);
             let is_other = |m: usize| {

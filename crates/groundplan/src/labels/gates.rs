@@ -50,7 +50,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     }
     let mut as_bays: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, &seen)).collect();
     let through = Through::new(views, seen);
-    // A way that is known in one row tells of those in the next.
+    // What leads through each row is counted in whole rows: a way that is known cuts the one that it leads through.
     let whole = uncut(views, rows);
     let whole = whole.as_ref().map(|rows| Through::new(views, self::seen(evidence, look, views, strips, rows, rows)));
     let in_each_row = whole.as_ref().unwrap_or(&through).in_each_row();
@@ -102,7 +102,8 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     Gates { ways, as_bays: in_line(as_bays) }
 }
 
-/// The rows as they are where nothing leads across them, of directions of which bays are known; nothing where none is cut.
+/// The rows, of directions of which bays are known, as if no way that is known cut them, none of them up to the walls beyond
+/// its ends; nothing where none is cut.
 fn uncut(views: &[Turned], rows: &[Row]) -> Option<Vec<Row>> {
     let mut whole: BTreeMap<_, Row> = BTreeMap::new();
     let mut is_cut = false;
@@ -259,7 +260,7 @@ pub fn leading_across([view, other]: [&Turned; 2], placed: &[Beside], row: &Row,
 
 /// The direction that is most nearly square to another.
 pub fn crossing(views: &[Turned], direction: usize) -> Option<&Turned> {
-    let sine = |view: &&Turned| libm::sin(view.angle - views[direction].angle).abs();
+    let sine = |view: &&Turned| view.sine(&views[direction]);
     views.iter().max_by(|a, b| sine(a).total_cmp(&sine(b))).filter(|view| sine(view) > 0.5)
 }
 

@@ -91,7 +91,7 @@ fn lies_askew_on(views: &[Turned], strips: &[Strip], placed: &[Beside], n: usize
     let own = &views[strip.direction];
     let sided = shared(strip.along, strip.held);
     let middle = sided.map(|u| own.to_map([u, strip.middle()]));
-    let askew = |its: &&Turned| its.direction != own.direction && libm::sin(own.angle - its.angle).abs() < ASKEW;
+    let askew = |its: &&Turned| its.direction != own.direction && own.sine(its) < ASKEW;
     views.iter().filter(askew).any(|its| {
         let [from, to] = middle.map(|end| its.place(end));
         let [along, across] = [0, 1].map(|axis| sorted([from[axis], to[axis]]));

@@ -132,9 +132,9 @@ pub fn is_met<'a>(
 /// True when a strip that is closed at a place goes on past it as another of its direction, over floor that both share.
 fn goes_on_beside(view: &Turned, strip: &Strip, side: usize, place: f64, other: &Strip) -> bool {
     let [low, high] = shared(strip.across, other.across);
-    let [from, to] = sorted([place, other.along[1 - side]]);
+    let between = sorted([place, other.along[1 - side]]);
     low < high
         && overlap(other.along, wider([place; 2], LOOK)) >= 0.0
         && (other.along[side] - place) * sign(side) >= strip.width()
-        && view.mean_blocked(view.column(from)..view.column(to) + 1, low, high) <= CLUTTER
+        && view.mean_blocked(view.columns(between), low, high) <= CLUTTER
 }

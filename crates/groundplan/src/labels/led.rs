@@ -28,7 +28,7 @@ pub fn sided_by(views: &[Turned], way: Strip, pieces: &[Strip], placed: &[Beside
     let Some(piece) = near.filter(is_under).max_by(|a, b| a.length().total_cmp(&b.length())) else { return way };
     let is_floor = |[from, to]: [f64; 2]| {
         let [low, high] = piece.across;
-        from >= to || view.mean_blocked(view.column(from)..view.column(to) + 1, low, high) <= CLUTTER
+        from >= to || view.mean_blocked(view.columns([from, to]), low, high) <= CLUTTER
     };
     if !is_floor([way.along[0], piece.along[0]]) || !is_floor([piece.along[1], way.along[1]]) {
         return way;
@@ -47,7 +47,7 @@ pub fn is_opened_into(views: &[Turned], way: &Strip, strips: &[Strip], placed: &
         })
     };
     let reached = own.rectangle(way.along, wider(way.across, MOUTH));
-    views.iter().filter(|its| libm::sin(own.angle - its.angle).abs() > corridors::ASKEW).any(|its| {
+    views.iter().filter(|its| own.sine(its) > corridors::ASKEW).any(|its| {
         let [along, across] = [0, 1].map(|axis| around(reached.iter().map(|&corner| its.place(corner)[axis])));
         let near = placed[its.direction].touching(wider(along, SLACK), wider(across, SLACK));
         near.into_iter().any(|n| opens(its, &strips[n]))

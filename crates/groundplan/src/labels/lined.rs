@@ -76,7 +76,7 @@ impl Turned {
         for (offset, along) in sides {
             for line in lines.at(offset) {
                 for bits in [&mut covered[line], &mut touched[line]] {
-                    bits.fill(self.column(along[0])..self.column(along[1]) + 1);
+                    bits.fill(self.columns(along));
                 }
             }
         }

@@ -67,6 +67,11 @@ impl<'a> Look<'a> {
     /// How many tiles follow each that are like it, for what is looked along with one step again and again.
     pub fn ahead(&self, step: [f64; 2]) -> Ahead {
         let (across, way) = (self.across.max(1), way_of(fixed(step)));
+        Ahead { way, tiles: self.tiles_ahead(across, way) }
+    }
+
+    /// The same one way, in rows of so many tiles.
+    fn tiles_ahead(&self, across: usize, way: usize) -> Vec<u8> {
         let mut ahead = vec![0; self.tiles.len()];
         let more =
             |[own, next]: [u8; 2], follow: u8| if (own ^ next) & STATES == 0 { follow.saturating_add(1) } else { 0 };
@@ -80,7 +85,7 @@ impl<'a> Look<'a> {
                     pairs.for_each(|[left, right]| visit(right, left));
                 }
             }
-            return Ahead(ahead);
+            return ahead;
         }
         let visit = |upper: usize| {
             let (below, above) = ahead.split_at_mut(upper);
@@ -98,7 +103,7 @@ impl<'a> Look<'a> {
         } else {
             uppers.for_each(visit);
         }
-        Ahead(ahead)
+        ahead
     }
 
     /// Points, in pixels of the grid, that have all between them that was seen of the map; none where nothing was.
@@ -277,13 +282,17 @@ fn coded(reach: u8, states: u8) -> u8 {
     reach.min(u8::MAX >> BITS_OF_STATES) << BITS_OF_STATES | state
 }
 
-/// How many tiles are known to follow each that are like it.
+/// How many tiles are known to follow each one way that are like it.
 #[derive(Default)]
-pub struct Ahead(Vec<u8>);
+pub struct Ahead {
+    way: usize,
+    tiles: Vec<u8>,
+}
 
 impl Ahead {
-    fn of(&self, tile: usize) -> u8 {
-        self.0.get(tile).copied().unwrap_or(0)
+    /// Which way, and how many.
+    fn of(&self, tile: usize) -> (usize, u8) {
+        (self.way, self.tiles.get(tile).copied().unwrap_or(0))
     }
 }
 
@@ -296,8 +305,6 @@ fn way_of(step: [i64; 2]) -> usize {
 /// How far lanes side by side go on over what is all alike.
 struct Alike {
     step: [i64; 2],
-    /// Which way they run.
-    way: usize,
     /// Pixels, times this, are samples.
     pace: [f32; 2],
     /// How far the lanes lie beside the first one, pixels: towards the lower end of each axis, and towards the upper.
@@ -311,12 +318,12 @@ impl Alike {
             let off = || starts.iter().map(|start| start[axis] - starts[0][axis]);
             [-off().min().unwrap_or(0), off().max().unwrap_or(0)].map(pixels)
         });
-        Self { step, way: way_of(step), pace: step.map(|s| 1.0 / pixels(s).abs()), beside }
+        Self { step, pace: step.map(|s| 1.0 / pixels(s).abs()), beside }
     }
 
     /// Samples from a place of the first lane on, over tiles that are alike so far around the one that it is in, and so
-    /// many ahead.
-    fn samples(&self, place: [i64; 2], reach: u8, ahead: u8) -> usize {
+    /// many that way ahead.
+    fn samples(&self, place: [i64; 2], reach: u8, (way, ahead): (usize, u8)) -> usize {
         if reach == 0 {
             return 0;
         }
@@ -327,7 +334,7 @@ impl Alike {
             return around;
         }
         let mut beyond = [[0.0; 2]; 2];
-        beyond[self.way % 2][usize::from(self.way < 2)] = (usize::from(ahead) * SIDE) as f32;
+        beyond[way % 2][usize::from(way < 2)] = (usize::from(ahead) * SIDE) as f32;
         around.max(self.within(place, beyond))
     }
 
@@ -382,7 +389,7 @@ mod tests {
         let (table, frame) = (Table::trinary(), Frame::new(width, height, 0.05, [0.0; 3]));
         let grid = Grid::new(&pixels, true, &table, frame);
         let look = Look::new(&grid, &Tiles::new(&grid, 1));
-        let ahead = |step: [f64; 2]| look.ahead(step).0.chunks(5).map(<[u8]>::to_vec).collect::<Vec<_>>();
+        let ahead = |step: [f64; 2]| look.ahead(step).tiles.chunks(5).map(<[u8]>::to_vec).collect::<Vec<_>>();
         assert_eq!(ahead([1.0, 0.1]), [[1, 0, 2, 1, 0], [1, 0, 1, 0, 0], [1, 0, 2, 1, 0], [4, 3, 2, 1, 0]]);
         assert_eq!(ahead([-1.0, 0.1]), [[0, 1, 0, 1, 2], [0, 1, 0, 1, 0], [0, 1, 0, 1, 2], [0, 1, 2, 3, 4]]);
         assert_eq!(ahead([0.1, 1.0]), [[3, 3, 2, 2, 0], [2, 2, 1, 1, 0], [1, 1, 0, 0, 0], [0, 0, 0, 0, 0]]);

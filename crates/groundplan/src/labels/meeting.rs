@@ -158,7 +158,7 @@ pub fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meet
         } else {
             (u, u)
         };
-        let columns = view.column(from)..view.column(to) + 1;
+        let columns = view.columns([from, to]);
         let [low, high] = inner(strip);
         if view.some_closed(columns.clone(), low, high).any() {
             return None;

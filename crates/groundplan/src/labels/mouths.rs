@@ -15,7 +15,7 @@ const ALIKE: f64 = 0.1;
 
 /// For each line of a view the columns of such mouths, by where they begin.
 pub fn of(views: &[Turned], view: &Turned, strips: &[Strip]) -> Vec<Vec<Range<usize>>> {
-    let square = |strip: &&Strip| libm::sin(views[strip.direction].angle - view.angle).abs() >= SQUARE;
+    let square = |strip: &&Strip| views[strip.direction].sine(view) >= SQUARE;
     let others: Vec<&Strip> = strips.iter().filter(square).filter(|strip| !strip.bays).collect();
     // Of each line the strips that reach it.
     let mut reaching: Vec<Vec<(&Strip, Range<usize>)>> = vec![Vec::new(); view.offsets.len()];
@@ -48,5 +48,5 @@ fn mouth(views: &[Turned], view: &Turned, offset: f64, strip: &Strip) -> Option<
     let [one, two] = strip.across.map(|t| view.crossing(other, offset, t));
     let s = f64::midpoint(one[0], two[0]);
     let reaches = strip.along[0] - NEAR <= s && s <= strip.along[1] + NEAR;
-    reaches.then(|| view.column(one[1].min(two[1]))..view.column(one[1].max(two[1])) + 1)
+    reaches.then(|| view.columns(sorted([one[1], two[1]])))
 }

@@ -35,7 +35,7 @@ pub fn of(view: &Turned, way: &Strip, known: &[&Strip]) -> Vec<Strip> {
 /// True where floor goes on over all the width, near its sides as in its middle, and no wall or door parts it.
 fn leads_on(view: &Turned, on: &Strip) -> bool {
     let [low, high] = on.across;
-    let columns = view.column(on.along[0])..view.column(on.along[1]) + 1;
+    let columns = view.columns(on.along);
     let near = SAME.min((high - low) / 4.0);
     let parts = [[low, high], [low + near, low + 2.0 * near], [high - 2.0 * near, high - near]];
     parts.into_iter().all(|[low, high]| view.mean_blocked(columns.clone(), low, high) <= CLUTTER)

@@ -75,7 +75,7 @@ pub fn are_here(rows: &[Row], corridors: &[[f64; 2]]) -> bool {
 
 /// Share of a row's length on which structure lies on one of its view's lines.
 fn seen(view: &Turned, line: usize, row: &Row) -> f64 {
-    let columns = view.column(row.along[0])..view.column(row.along[1]) + 1;
+    let columns = view.columns(row.along);
     view.covered[line].count(columns.clone()) as f64 / columns.len() as f64
 }
 

@@ -71,7 +71,7 @@ impl Seen<'_> {
     pub fn is_at_wall(&self, strips: &[Strip], side: usize) -> bool {
         let (view, end) = (self.views[0], self.row.along[side]);
         let beyond = if side == 0 { [end - NEAR, end] } else { [end, end + NEAR] };
-        gates::walled(view, strips, self.row, self.between, view.column(beyond[0])..view.column(beyond[1]) + 1).any()
+        gates::walled(view, strips, self.row, self.between, view.columns(beyond)).any()
     }
 
     /// The corridors that run along it no further off than a row is deep.

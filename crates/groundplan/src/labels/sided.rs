@@ -67,9 +67,7 @@ pub fn is_within_outline(view: &Turned, strips: &[Strip], placed: &[Beside], n: 
         let open: Vec<bool> = blocked.iter().map(|share| *share == 0.0).collect();
         runs(&open, true).iter().all(|(from, to)| ((to - from) as f64) * view.cell < WAY_IN)
     };
-    let is_before_floor = |end: [f64; 2]| {
-        view.mean_blocked(view.column(end[0])..view.column(end[1]) + 1, own.across[0], own.across[1]) < FLOOR
-    };
+    let is_before_floor = |end: [f64; 2]| view.mean_blocked(view.columns(end), own.across[0], own.across[1]) < FLOOR;
     let [low, high] = own.along;
     let ends = [[low - BEYOND.1, low - BEYOND.0], [high + BEYOND.0, high + BEYOND.1]];
     let is_behind = |other: &Strip| {

@@ -32,7 +32,7 @@ pub fn without(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
         // From where to where along the strip each of the others lies, and how wide it is.
         let lies = |aisle: &Strip| {
             let [s, u] = view.crossing(other, own.middle(), aisle.middle());
-            let reach = aisle.width() / 2.0 / libm::sin(other.angle - view.angle).abs();
+            let reach = aisle.width() / 2.0 / other.sine(view);
             // At a rack's end it leads past that.
             let goes_on = holds(wider(aisle.along, -PAST * own.width()), s);
             (goes_on && aisle.length() > own.length()).then_some(([u - reach, u + reach], aisle.width()))
@@ -49,9 +49,7 @@ pub fn without(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
         if own.along[0] < before[0] - MOUTH || own.along[1] > behind[1] + MOUTH {
             return false;
         }
-        let is_closed = |[from, to]: [f64; 2]| {
-            view.mean_blocked(view.column(from)..view.column(to) + 1, own.across[0], own.across[1]) > CLUTTER
-        };
+        let is_closed = |ends: [f64; 2]| view.mean_blocked(view.columns(ends), own.across[0], own.across[1]) > CLUTTER;
         let opens = [own.along[0] - before[1] <= MOUTH, behind[0] - own.along[1] <= MOUTH];
         let is_narrower = |width: f64| own.width() < NARROWER * width;
         behind[0] - before[1] <= DEEPEST

@@ -253,8 +253,7 @@ impl<'a> Candidate<'a> {
     /// The ways along it that rivals leave, among some columns.
     pub fn ways_left(&self, by: Held, within: Range<usize>, rivals: &[&Strip]) -> Vec<(Strip, bool)> {
         let view = self.view;
-        let rivals: Vec<Range<usize>> =
-            rivals.iter().map(|rival| view.column(rival.along[0])..view.column(rival.along[1]) + 1).collect();
+        let rivals: Vec<Range<usize>> = rivals.iter().map(|rival| view.columns(rival.along)).collect();
         self.ways_in(by, &self.asked.stretches(within, self.asked.least(by), &rivals))
     }
 

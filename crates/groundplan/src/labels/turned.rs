@@ -274,6 +274,11 @@ impl Turned {
         [s, s * cos - t * sin]
     }
 
+    /// The sine of the angle to another direction, whichever way either runs.
+    pub fn sine(&self, other: &Self) -> f64 {
+        libm::sin(self.angle - other.angle).abs()
+    }
+
     /// A rectangle of places, counter-clockwise, as a polygon in the map frame.
     pub fn rectangle(&self, along: [f64; 2], across: [f64; 2]) -> Vec<[f64; 2]> {
         rectangle(along, across).map(|corner| self.to_map(corner)).to_vec()
@@ -282,6 +287,11 @@ impl Turned {
     /// The column that holds place `u`, the first or last when it lies outside.
     pub fn column(&self, u: f64) -> usize {
         whole((u - self.start[0]) / self.cell).min(self.size[0] - 1)
+    }
+
+    /// The columns from the one that holds a place to the one that holds another, both included.
+    pub fn columns(&self, [from, to]: [f64; 2]) -> Range<usize> {
+        self.column(from)..self.column(to) + 1
     }
 
     /// Place along of a column's lower border.
@@ -303,7 +313,7 @@ impl Turned {
 
 /// The least sine of the angle between two directions, of those that are no less than that.
 pub fn least_sine(views: &[Turned], least: f64) -> f64 {
-    let sines = views.iter().flat_map(|one| views.iter().map(|other| libm::sin(one.angle - other.angle).abs()));
+    let sines = views.iter().flat_map(|one| views.iter().map(|other| one.sine(other)));
     sines.filter(|sine| *sine >= least).fold(1.0, f64::min)
 }
 

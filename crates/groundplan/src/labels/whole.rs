@@ -123,7 +123,7 @@ fn is_as_walls(views: &[Turned], row: &Row) -> bool {
 }
 
 fn is_shell(view: &Turned, row: &Row) -> bool {
-    let columns = view.column(row.along[0])..view.column(row.along[1]) + 1;
+    let columns = view.columns(row.along);
     let count = columns.len() as f64;
     let closed = |face: f64| view.share_touched(columns.clone(), face - NEAR, face + NEAR) >= CLOSED;
     let blocked = |low, high| view.mean_blocked(columns.clone(), low, high);

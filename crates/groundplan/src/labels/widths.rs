@@ -136,7 +136,7 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
 
 /// True when a wall runs all along one side of a strip.
 fn is_at_wall(view: &Turned, strip: &Strip) -> bool {
-    let columns = view.column(strip.along[0])..view.column(strip.along[1]) + 1;
+    let columns = view.columns(strip.along);
     strip.across.into_iter().zip([-BEYOND, BEYOND]).any(|(side, beyond)| {
         let ends = sorted([side, side + beyond]);
         let taken = view.some_blocked(columns.clone(), ends[0], ends[1]);
