@@ -65,6 +65,27 @@ def test_a_row_of_racks_has_the_pitch_of_its_posts() -> None:
     assert scores["pitch_error_m"] <= 0.05
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_the_pitch_of_racks_is_a_bay_and_not_a_pallet(seed: int) -> None:
+    # Five single racks of twelve bays of 3.5 m, a third empty; three pallets as far apart in the others.
+    draws = np.random.default_rng(seed)
+    bay, count = 70, 12
+    picture = np.full((470, 1030), 205, np.uint8)
+    picture[18:-18, 18:-18] = 0
+    picture[20:-20, 20:-20] = 254
+    for low in range(80, 400, 74):
+        row = picture[low : low + 18, 100 : 100 + count * bay]
+        for start in range(0, count * bay, bay):
+            for post in (start, start + bay - 2):
+                row[[0, 1, -2, -1], post : post + 2] = 0
+            for at in (4, 26, 48) if draws.random() < 0.65 else ():
+                row[1:-1, start + at : start + at + 18] = 0
+    racks = groundplan.survey(picture, resolution=0.05).of_kind("rack")
+    assert [rack["pitch"] for rack in racks] == pytest.approx([3.5] * 5, abs=0.1)
+    # Posts stand where each rack begins.
+    assert all(min(rack["phase"], rack["pitch"] - rack["phase"]) < 0.4 for rack in racks)
+
+
 def test_a_pattern_of_bays_lies_on_the_posts() -> None:
     _, survey = wide()
     bays = [pattern for pattern in survey.patterns if pattern["kind"] == "bays"]

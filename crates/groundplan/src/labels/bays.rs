@@ -1,7 +1,8 @@
 //! Bays: the pitch of the posts along each row of racks, and where they begin.
 //!
 //! Rows of one hall have one pitch, and each has its own beginning: the powers of their spectra add up whatever their
-//! phases, and what goods do to one row they do not do to all.
+//! phases, and what goods do to one row they do not do to all. Where it is goods that recur most, several to a bay, the
+//! rows' ends tell how many: posts stand there.
 
 use super::Evidence;
 use super::period::{self, Period};
@@ -11,6 +12,7 @@ use super::rows::Row;
 use super::turned::Turned;
 use crate::bands::map_each;
 use crate::ends::holds;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The shortest pitch that is looked for, and the longest, metres.
@@ -33,6 +35,12 @@ const CLEAR: f64 = 1.5;
 const AS_GOOD: f64 = 0.5;
 /// The common power stands out of the median by this factor.
 const CONTRAST: f64 = 1.8;
+/// Goods recur at a whole part of a bay, but for this share.
+const PART: f64 = 0.08;
+/// A row is so many of them long, but for this share of one.
+const WHOLE: f64 = 0.3;
+/// That all rows are as many bays long comes of chance no more often than this.
+const CHANCE: f64 = 0.25;
 
 /// For each row its period along its direction's places, where there is one.
 pub fn find(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Option<Period>> {
@@ -48,11 +56,17 @@ pub fn find(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Option<P
         let places: Vec<Vec<f64>> = own.iter().map(|&n| along(&rows[n], &specks)).collect();
         drop(specks);
         let Some(common) = common(&places, evidence) else { continue };
-        let length = |n: usize| rows[n].along[1] - rows[n].along[0];
+        let told = view.pitch.and_then(|bay| whole(bay / common));
+        // What is longer than beams are recurs by chance, unless posts tell it.
+        if common > pitch::LONGEST && told.is_none() {
+            continue;
+        }
+        let lengths = own.iter().map(|&n| rows[n].length() / common);
+        let times = by_lengths(lengths, (pitch::LONGEST / common) as usize).or(told).unwrap_or(1);
         let periods = map_each(own.len(), evidence.threads, |m| {
-            let (places, length) = (&places[m], length(own[m]));
-            let key = || Key::default().numbers(places).number(common).number(length);
-            evidence.recall.periods.or_find(key, || of_row(places, common, length))
+            let (places, along) = (&places[m], rows[own[m]].along);
+            let key = || Key::default().numbers(places).number(common).with(times as u64).numbers(&along);
+            evidence.recall.periods.or_find(key, || of_row(places, common, times, along))
         });
         for (n, period) in own.into_iter().zip(periods) {
             found[n] = period;
@@ -109,18 +123,73 @@ fn common(rows: &[Vec<f64>], evidence: &Evidence) -> Option<f64> {
         .map(|(_, pitch)| pitch)
 }
 
+/// A whole number, where a number is one but for a share of it.
+fn whole(number: f64) -> Option<usize> {
+    let whole = number.round();
+    (whole >= 1.0 && (number - whole).abs() <= PART * whole).then_some(whole as usize)
+}
+
+/// How many times what recurs recurs from post to post, and no more times than some, by how many times it fits into each row:
+/// racks begin and end at posts, so that all are as many bays long, be it that one was seen in part.
+fn by_lengths(lengths: impl Iterator<Item = f64>, most: usize) -> Option<usize> {
+    let lengths: BTreeSet<usize> = lengths
+        .filter(|length| (length - length.round()).abs() <= WHOLE)
+        .map(|length| length.round() as usize)
+        .collect();
+    let chance = |times: usize| {
+        let fitting = lengths.iter().filter(|length| *length % times == 0).count();
+        let others = lengths.len() - fitting;
+        let ways = if others == 0 { 1.0 } else { lengths.len() as f64 };
+        (fitting > 1 && others <= 1).then(|| (times, ways * (times as f64).powi(-(fitting as i32))))
+    };
+    let told = (2..=most).filter_map(chance).filter(|told| told.1 <= CHANCE);
+    told.min_by(|one, two| one.1.total_cmp(&two.1)).map(|told| told.0)
+}
+
 /// A row's own pitch near the common one. Posts are narrow: their harmonics tell it more finely than they do
 /// themselves.
-fn of_row(places: &[f64], common: f64, length: f64) -> Option<Period> {
+///
+/// What recurs, so many times in a bay, says how clearly it does. At one of its places stand posts: a row ends at these.
+fn of_row(places: &[f64], common: f64, times: usize, along: [f64; 2]) -> Option<Period> {
     // Two bays at least, and posts enough for them.
+    let (common, length) = (times as f64 * common, along[1] - along[0]);
     let least = common * (1.0 - OWN);
     let posts = places.len() as f64 / POST;
     if length <= 1.5 * least || posts < CLEAR {
         return None;
     }
     let pitches = (-STEPS..=STEPS).map(|n| common * (1.0 + OWN * f64::from(n) / f64::from(STEPS)));
+    let harmonics = HARMONICS * times;
     let own =
-        pitches.map(|pitch| (period::power(places, pitch, HARMONICS), pitch)).max_by(|a, b| a.0.total_cmp(&b.0))?.1;
-    let period = period::measure(places, own);
+        pitches.map(|pitch| (period::power(places, pitch, harmonics), pitch)).max_by(|a, b| a.0.total_cmp(&b.0))?.1;
+    let goods = period::measure(places, own / times as f64);
+    let phases = (0..times).map(|n| (goods.phase + n as f64 * goods.pitch).rem_euclid(own));
+    // How far the row's ends lie from posts, in bays.
+    let off = |phase: f64| {
+        let bays = along.iter().map(|end| (end - phase) / own);
+        bays.map(|bay| (bay - bay.round()).abs()).sum::<f64>()
+    };
+    let phase = phases.min_by(|one, two| off(*one).total_cmp(&off(*two)))?;
+    let period = Period { pitch: own, phase, ..goods };
     (posts * period.strength.powi(2) >= CLEAR && length > 1.5 * own).then_some(period)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_whole_bays_tell_how_often_goods_stand_in_one() {
+        let times = |lengths: &[f64]| by_lengths(lengths.iter().copied(), 3);
+        // Of rows of one length nothing is told.
+        assert_eq!(times(&[12.1; 8]), None);
+        assert_eq!(times(&[12.1, 12.0, 8.1, 6.2, 3.9]), Some(2));
+        assert_eq!(times(&[18.1, 15.0, 15.1]), Some(3));
+        assert_eq!(times(&[10.1, 9.1, 7.0]), None);
+        // One was seen in part, or ends nowhere near.
+        assert_eq!(times(&[18.1, 15.0, 27.1, 10.0]), Some(3));
+        assert_eq!(times(&[18.1, 15.0, 27.1, 10.5, 11.5]), Some(3));
+        // As many times as most are.
+        assert_eq!(times(&[24.0, 12.0, 18.0, 36.0]), Some(3));
+    }
 }
