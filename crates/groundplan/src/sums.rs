@@ -112,6 +112,11 @@ fn unpacked(packed: Packed) -> Sums {
     Sums { unknown: of_pixels(0), free: of_pixels(1), pixels: of_pixels(2), percent: (packed >> FIELDS[3]) as i64 }
 }
 
+fn is_alike(word: [u8; WORD]) -> bool {
+    let word = u64::from_ne_bytes(word);
+    word == word.rotate_left(u8::BITS)
+}
+
 /// Sums of each face: what lies left of its right side less what lies left of its left side, row by row. A pixel
 /// belongs to the face that its centre lies in; a centre on a line belongs to the right of it or above.
 fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads: usize) -> Vec<Sums> {
@@ -127,6 +132,11 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads
             let Crossings { mut walks, edges } = Crossings::new(arrangement, width, &band);
             // What the pixels left of each edge add, row by row.
             let mut sums: Vec<Packed> = vec![0; edges.len()];
+            // What the first pixels of a word add; mostly all are alike.
+            let of_first = |pixels: &[u8], count: usize| match pixels.first_chunk::<WORD>() {
+                Some(word) if is_alike(*word) => packed[usize::from(word[0])] * count as Packed,
+                _ => pixels[..count].iter().map(|&value| packed[usize::from(value)]).sum(),
+            };
             for y in band {
                 let row = grid.row(y);
                 let mut sum: Packed = 0;
@@ -143,9 +153,7 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads
                 left[width / WORD] = sum;
                 for walk in walks.iter_mut().filter(|walk| walk.rows.contains(&y)) {
                     let (edge, column) = walk.next(y, &edges, width);
-                    let rest = &row[column - column % WORD..column];
-                    sums[edge] +=
-                        left[column / WORD] + rest.iter().map(|&value| packed[usize::from(value)]).sum::<Packed>();
+                    sums[edge] += left[column / WORD] + of_first(&row[column - column % WORD..], column % WORD);
                 }
             }
             (edges, sums)

@@ -29,26 +29,31 @@ impl Tiles {
         let bits = grid.table.states.map(bit);
         let states = map_bands([grid.frame.width, grid.frame.height], threads, |band| {
             let mut states = vec![0u8; band.len().div_ceil(SIDE) * width];
-            // The last eight pixels that were looked at in each tile: mostly the next are the same.
-            let mut last = vec![0u64; width];
+            // Of each whole tile the lowest eight pixels, and what is not as the first of them: mostly nothing.
+            let mut first = vec![0u64; grid.frame.width / SIDE];
+            let mut differing = first.clone();
             for (tiles, low) in states.chunks_mut(width).zip(band.clone().step_by(SIDE)) {
-                for y in low..(low + SIDE).min(band.end) {
-                    let words = grid.row(y).chunks_exact(SIDE);
-                    let rest = words.remainder();
-                    for ((tile, last), pixels) in tiles.iter_mut().zip(&mut last).zip(words) {
-                        let word = pixels.iter().fold(0, |word, &pixel| word << 8 | u64::from(pixel));
-                        if *tile == 0 || word != *last {
-                            *last = word;
-                            *tile |= if word == word.rotate_left(8) {
-                                bits[usize::from(pixels[0])]
-                            } else {
-                                pixels.iter().fold(0, |set, &pixel| set | bits[usize::from(pixel)])
-                            };
-                        }
+                let rows = low..(low + SIDE).min(band.end);
+                for ((first, differing), word) in first.iter_mut().zip(&mut differing).zip(words(grid.row(low))) {
+                    (*first, *differing) = (word, word ^ word.rotate_left(8));
+                }
+                for y in low + 1..rows.end {
+                    for ((first, differing), word) in first.iter().zip(&mut differing).zip(words(grid.row(y))) {
+                        *differing |= word ^ first;
                     }
-                    for &pixel in rest {
-                        tiles[width - 1] |= bits[usize::from(pixel)];
-                    }
+                }
+                let of = |set: u8, pixels: &[u8]| pixels.iter().fold(set, |set, &pixel| set | bits[usize::from(pixel)]);
+                for (n, (tile, (first, differing))) in tiles.iter_mut().zip(first.iter().zip(&differing)).enumerate() {
+                    let pixels = |y: usize| &grid.row(y)[n * SIDE..(n + 1) * SIDE];
+                    *tile = if *differing == 0 {
+                        bits[usize::from(*first as u8)]
+                    } else {
+                        rows.clone().map(pixels).fold(0, of)
+                    };
+                }
+                for y in rows {
+                    let rest = grid.row(y).chunks_exact(SIDE).remainder();
+                    tiles[width - 1] = of(tiles[width - 1], rest);
                 }
             }
             states
@@ -98,4 +103,9 @@ impl Tiles {
         }
         (1..=h).flat_map(|y| reaches[y * wide + 1..y * wide + 1 + w].iter().copied()).collect()
     }
+}
+
+/// A row's pixels, eight at a time, without those that are left.
+fn words(row: &[u8]) -> impl Iterator<Item = u64> + '_ {
+    row.chunks_exact(SIDE).map(|pixels| pixels.iter().rev().fold(0, |word, &pixel| word << 8 | u64::from(pixel)))
 }

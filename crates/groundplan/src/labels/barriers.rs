@@ -132,6 +132,16 @@ pub fn stops(view: &Turned, across: [f64; 2], range: Range<usize>) -> Vec<usize>
     if barred.first(range.clone(), barred.least(|barred| barred > 0.0)).is_none() {
         return found;
     }
+    // Or past it there is room all along.
+    let is_clear = |low: usize| {
+        let ends = [place(low), place(low + side)];
+        // Beyond the map nothing gets through.
+        let on_map = view.cells_in(ends[0], ends[1]) as usize == side;
+        on_map && view.barred_in(ends[0], ends[1]).first(range.clone(), 1).is_none()
+    };
+    if (0..=count.saturating_sub(side)).step_by(side.div_ceil(2)).any(is_clear) {
+        return found;
+    }
     // For how many columns each place across has been free, and what is reached there.
     let mut free_for = vec![side; count];
     let mut reached = vec![true; count];

@@ -62,17 +62,19 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
         pairs(places, first - BASE..lags, |lag, _| sums[lag] += 1.0);
     }
     // What lies around a lag is chance. How many pairs are more than that, and in its deviations.
-    let excess = |sums: &[f64], times: usize, lag: usize| {
+    let excess = |below: &[f64], times: usize, lag: usize| {
         let total = |reach: usize| {
-            let around = times * lag - times * reach..times * (lag + reach) + 1;
-            (sums[around.clone()].iter().sum::<f64>(), around.len() as f64)
+            let [from, to] = [times * (lag - reach), times * (lag + reach) + 1];
+            (below[to] - below[from], (to - from) as f64)
         };
         let ((near, few), (all, many)) = (total(POST), total(BASE));
         let chance = (all - near) / (many - few) * few;
         (near - chance, (near - chance) / libm::sqrt(chance + 1.0))
     };
     // What recurs does so twice as far off too; where nothing does it need not be asked whether it is along faces.
-    let all: Vec<[(f64, f64); 2]> = (first..=last).map(|lag| [1, 2].map(|times| excess(&sums, times, lag))).collect();
+    // Of whole numbers what one sum is less another is exact.
+    let below = all_below(&sums);
+    let all: Vec<[(f64, f64); 2]> = (first..=last).map(|lag| [1, 2].map(|times| excess(&below, times, lag))).collect();
     if all.iter().all(|[once, twice]| once.1.min(twice.1) < CONTRAST) {
         return None;
     }
@@ -86,7 +88,7 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
     let threads = worth(view.size[0] * view.size[1], evidence.threads);
     let empty = || vec![0; lags];
     let faces = fold(lines.len(), threads, empty, |sums, n| add(sums, &of_line(n)), |sums, more| add(sums, &more));
-    let faces: Vec<f64> = faces.into_iter().map(f64::from).collect();
+    let faces = all_below(&faces.into_iter().map(f64::from).collect::<Vec<_>>());
     let found: Vec<(f64, f64)> = (first..=last)
         .zip(&all)
         .map(|(lag, all)| {
@@ -104,6 +106,16 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<f64> {
         once.1.min(twice.1)
     };
     Some(between_steps(&sums, one_bay(pitch, clear)) * STEP)
+}
+
+/// The sums of all values before each, and of all.
+fn all_below(values: &[f64]) -> Vec<f64> {
+    let mut sum = 0.0;
+    let sums = values.iter().map(|value| {
+        sum += value;
+        sum
+    });
+    std::iter::once(0.0).chain(sums).collect()
 }
 
 /// Of lags and how many pairs are so far apart the one from post to post, or some whole times that.
@@ -205,12 +217,7 @@ fn specks(evidence: &Evidence, view: &Turned) -> Vec<(f64, Vec<i32>)> {
 /// What is not free on one side of a line: the columns' shares, summed up from the first.
 fn taken(view: &Turned, offset: f64, side: f64) -> Vec<f64> {
     let [low, high] = sorted([offset + side * BESIDE.0, offset + side * BESIDE.1]);
-    let mut sum = 0.0;
-    let sums = view.all_blocked(low, high).into_iter().map(|blocked| {
-        sum += blocked;
-        sum
-    });
-    std::iter::once(0.0).chain(sums).collect()
+    all_below(&view.all_blocked(low, high))
 }
 
 /// True when a row lies on one side of the line from one speck to another, and free floor on the other.
