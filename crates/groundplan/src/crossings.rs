@@ -1,7 +1,7 @@
 //! Where the lines of an arrangement cross rows of pixels, from row to row without a division.
 
 use crate::arrangement::{Arrangement, LatticeLine, NONE};
-use std::ops::Range;
+use std::ops::{AddAssign, Range};
 
 /// An edge that crosses rows of a band.
 pub struct Crossing {
@@ -19,7 +19,7 @@ pub struct Crossings {
 
 /// Along a line from row to row.
 pub struct Walk {
-    pub rows: Range<usize>,
+    rows: Range<usize>,
     /// The edge that crosses the row at hand, or one before it.
     edge: usize,
     /// How many pixels of the row lie left of it, less than nothing beyond the map, and the rest of that division.
@@ -48,19 +48,36 @@ impl Walk {
         Self { rows, edge, column, rest, by: divided(step), divisor }
     }
 
-    /// The edge that crosses a row, which comes after the row before, and how many pixels lie left of it.
-    pub fn next(&mut self, y: usize, edges: &[Crossing], width: usize) -> (usize, usize) {
-        while edges[self.edge].end <= y {
-            self.edge += 1;
+    /// Through some rows, which come after those before: adds to the edge that crosses each what is given for the row and
+    /// how many pixels of it lie left of the edge.
+    pub fn add<T: Copy + Default + AddAssign>(
+        &mut self,
+        rows: &Range<usize>,
+        edges: &[Crossing],
+        width: usize,
+        sums: &mut [T],
+        given: impl Fn(usize, usize) -> T,
+    ) {
+        let &mut Self { mut edge, mut column, mut rest, by, divisor, .. } = self;
+        let (mut y, end) = (self.rows.start.max(rows.start), self.rows.end.min(rows.end));
+        while y < end {
+            while edges[edge].end <= y {
+                edge += 1;
+            }
+            let mut sum = T::default();
+            for y in y..end.min(edges[edge].end) {
+                sum += given(y, column.clamp(0, width as i64) as usize);
+                column += by[0];
+                rest += by[1];
+                if rest >= divisor {
+                    rest -= divisor;
+                    column -= 1;
+                }
+            }
+            sums[edge] += sum;
+            y = edges[edge].end;
         }
-        let column = self.column.clamp(0, width as i64) as usize;
-        self.column += self.by[0];
-        self.rest += self.by[1];
-        if self.rest >= self.divisor {
-            self.rest -= self.divisor;
-            self.column -= 1;
-        }
-        (self.edge, column)
+        (self.edge, self.column, self.rest) = (edge, column, rest);
     }
 }
 

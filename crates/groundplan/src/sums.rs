@@ -89,6 +89,8 @@ fn pixel_under(grid: &Grid, arrangement: &Arrangement, face: usize, rows: &Range
 
 /// Pixels that are looked at together.
 const WORD: usize = 8;
+/// Rows that lines are followed through together, so few that they stay at hand.
+const NEAR: usize = 16;
 /// Rows that are added up before they are put to the others.
 const TOGETHER: usize = 64 * BAND_ROWS;
 
@@ -128,7 +130,7 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads
         let some = first..rows.end.min(first + TOGETHER);
         let parts = map_bands([width, some.len()], threads, |band| {
             let band = band.start + some.start..band.end + some.start;
-            let mut left: Vec<Packed> = vec![0; width / WORD + 1];
+            let mut left: Vec<Vec<Packed>> = vec![vec![0; width / WORD + 1]; NEAR];
             let Crossings { mut walks, edges } = Crossings::new(arrangement, width, &band);
             // What the pixels left of each edge add, row by row.
             let mut sums: Vec<Packed> = vec![0; edges.len()];
@@ -137,23 +139,29 @@ fn face_sums(grid: &Grid, arrangement: &Arrangement, rows: Range<usize>, threads
                 Some(word) if is_alike(*word) => packed[usize::from(word[0])] * count as Packed,
                 _ => pixels[..count].iter().map(|&value| packed[usize::from(value)]).sum(),
             };
-            for y in band {
-                let row = grid.row(y);
-                let mut sum: Packed = 0;
-                // Most words are as the one before them.
-                let (mut last, mut of_last) = ([0; WORD], packed[0] << WORD.ilog2());
-                for (before, word) in left.iter_mut().zip(row.chunks_exact(WORD)) {
-                    *before = sum;
-                    if *word != last {
-                        last.copy_from_slice(word);
-                        of_last = word.iter().map(|&value| packed[usize::from(value)]).sum();
+            for first in band.clone().step_by(NEAR) {
+                let rows = first..band.end.min(first + NEAR);
+                for (left, y) in left.iter_mut().zip(rows.clone()) {
+                    let mut sum: Packed = 0;
+                    // Most words are as the one before them.
+                    let (mut last, mut of_last) = ([0; WORD], packed[0] << WORD.ilog2());
+                    for (before, word) in left.iter_mut().zip(grid.row(y).chunks_exact(WORD)) {
+                        *before = sum;
+                        if *word != last {
+                            last.copy_from_slice(word);
+                            of_last = word.iter().map(|&value| packed[usize::from(value)]).sum();
+                        }
+                        sum += of_last;
                     }
-                    sum += of_last;
+                    left[width / WORD] = sum;
                 }
-                left[width / WORD] = sum;
-                for walk in walks.iter_mut().filter(|walk| walk.rows.contains(&y)) {
-                    let (edge, column) = walk.next(y, &edges, width);
-                    sums[edge] += left[column / WORD] + of_first(&row[column - column % WORD..], column % WORD);
+                let near: Vec<_> = rows.clone().map(|y| grid.row(y)).zip(&left).collect();
+                let left_of = |y: usize, column: usize| {
+                    let ((row, left), rest) = (near[y - first], column % WORD);
+                    left[column / WORD] + of_first(&row[column - rest..], rest)
+                };
+                for walk in &mut walks {
+                    walk.add(&rows, &edges, width, &mut sums, left_of);
                 }
             }
             (edges, sums)
