@@ -6,7 +6,7 @@ use super::beside::Beside;
 use super::corridors::{self, Strip};
 use super::onward;
 use super::recall::Key;
-use super::stretches::{Candidate, Found, Held, beyond, depth, fewest_faced, fewest_seen, may_be_bay, ragged};
+use super::stretches::{Candidate, Found, Held, Place, beyond, depth, may_be_bay, ragged};
 use super::sums::What;
 use super::sweep::Sweep;
 use super::turned::Turned;
@@ -61,25 +61,23 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     while width <= WIDEST * parameters.labels_max_width {
         let step = (STEP * width).max(view.cell);
         let extent = view.size[1] as f64 * view.cell;
-        let both = if width >= NARROWEST { &[Held::Deep, Held::Thin][..] } else { &[Held::Thin] };
+        let fewest = [Held::Deep, Held::Thin].map(|by| by.fewest(view, width));
         let mut next = usize::MAX;
         for n in 0..((extent - width) / step).max(0.0) as usize {
             let low = view.start[1] + n as f64 * step;
-            let across = [low, low + width];
-            let any = |is: &dyn Fn([f64; 2]) -> bool| beyond(across).into_iter().any(is);
-            if any(&|side| seen.between(side) < fewest_seen(view)) {
-                continue;
-            }
-            let is_faced = !any(&|side| seen.on_lines(side) < fewest_faced(view));
-            let own: &[Held] = if is_faced { both } else { &both[..both.len() - 1] };
-            if own.is_empty() {
-                continue;
-            }
+            let place = Place::new(view, [low, low + width]);
+            let may_be = fewest.map(|fewest| place.sides().iter().all(|rows| seen.are_as_many(rows, fewest)));
+            let own: &[Held] = match [width >= NARROWEST && may_be[0], may_be[1]] {
+                [true, true] => &[Held::Deep, Held::Thin],
+                [true, false] => &[Held::Deep],
+                [false, true] => &[Held::Thin],
+                [false, false] => continue,
+            };
             match groups.last_mut() {
                 Some(group) if n == next && group.len() < GROUP && own == by[group.start] => group.end += 1,
                 _ => groups.push(tried.len()..tried.len() + 1),
             }
-            tried.push(across);
+            tried.push(place);
             by.push(own);
             next = n + 1;
             widest = widest.max(width);
@@ -89,13 +87,13 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     let depth_of_all = depth([0.0, widest]);
     let group = (GROUP - 1) as f64 * (STEP * widest).max(view.cell);
     let around = [depth_of_all, group + widest + depth_of_all];
-    let lows: Vec<f64> = groups.iter().map(|group| tried[group.start][0]).collect();
+    let lows: Vec<f64> = groups.iter().map(|group| tried[group.start].across[0]).collect();
     let sweep = Sweep { view, places: &lows, around, what: &[What::Blocked, What::Occupied] };
     let mut candidates = sweep.find(TOGETHER, threads, |near, n, found| {
         let group = groups[n].clone();
         let one_may = OnceCell::new();
         for n in group.clone() {
-            let (across, by) = (tried[n], by[n]);
+            let (across, by) = (tried[n].across, by[n]);
             let told = [may_be_bay(across, bay), by.contains(&Held::Deep)].map(u64::from);
             let key = || told.into_iter().fold(view.key(across, depth(across)), Key::with);
             let may_be = || Candidate::may_be(near.view(), &tried[group.clone()], by);
@@ -111,7 +109,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     let mut placed = Beside::of(view);
     let mut next = 0;
     for short in candidates {
-        let (candidate, by) = (short.strip(view, tried[short.tried as usize]), short.by);
+        let (candidate, by) = (short.strip(view, tried[short.tried as usize].across), short.by);
         if short.is_cut {
             cut.add(&candidate);
             continue;
@@ -202,40 +200,32 @@ pub fn clear_of(way: &Strip, others: &[Strip]) -> Option<Strip> {
     (along[1] - along[0] >= MOST * way.length()).then(|| Strip { along, ..way.clone() })
 }
 
-/// How much is occupied between two places across, and how much structure lies on lines there: where it is next to
-/// nothing, no column need be asked.
-struct Seen<'a> {
-    view: &'a Turned,
-    /// Occupied samples below each row of cells.
-    below: Vec<u64>,
-    /// Columns with structure on the lines below each one.
-    lined: Vec<usize>,
+/// How much is occupied in rows of cells, and how much structure lies on lines there: where it is next to nothing, no
+/// column need be asked.
+struct Seen {
+    /// Occupied samples below each row of cells, and columns with structure on each line below it, together.
+    below: Vec<[u64; 2]>,
 }
 
-impl<'a> Seen<'a> {
-    fn new(view: &'a Turned) -> Self {
-        let mut below = vec![0];
-        for (n, row) in view.rows.iter().enumerate() {
-            below.push(below[n] + row.occupied);
+impl Seen {
+    fn new(view: &Turned) -> Self {
+        let mut rows: Vec<[u64; 2]> = view.rows.iter().map(|row| [row.occupied, 0]).collect();
+        for (offset, line) in view.offsets.iter().zip(view.covered.iter()) {
+            let row = whole((offset - view.start[1]) / view.cell).min(view.size[1] - 1);
+            rows[row][1] += line.count(0..view.size[0]) as u64;
         }
-        let mut lined = vec![0];
-        for (n, line) in view.covered.iter().enumerate() {
-            lined.push(lined[n] + line.count(0..view.size[0]));
+        let mut below = vec![[0; 2]];
+        for (n, row) in rows.iter().enumerate() {
+            below.push([0, 1].map(|of| below[n][of] + row[of]));
         }
-        Self { view, below, lined }
+        Self { below }
     }
 
-    /// Columns with structure on the lines that lie there, together.
-    fn on_lines(&self, [low, high]: [f64; 2]) -> f64 {
-        let lines = self.view.lines(low, high);
-        (self.lined[lines.end] - self.lined[lines.start]) as f64
-    }
-
-    /// Occupied samples, a row to either side included.
-    fn between(&self, [low, high]: [f64; 2]) -> f64 {
-        let row = |v: f64| whole((v - self.view.start[1]) / self.view.cell);
-        let last = self.below.len() - 1;
-        (self.below[(row(high) + 2).min(last)] - self.below[row(low).saturating_sub(1).min(last)]) as f64
+    /// True where there is as much of both in some rows, of lines a row to either side included, which may lie between.
+    fn are_as_many(&self, rows: &Range<usize>, [samples, lined]: [f64; 2]) -> bool {
+        let count = |of: usize, from: usize, to: usize| (self.below[to][of] - self.below[from][of]) as f64;
+        count(0, rows.start, rows.end) >= samples
+            && count(1, rows.start.saturating_sub(1), (rows.end + 1).min(self.below.len() - 1)) >= lined
     }
 }
 

@@ -198,8 +198,13 @@ impl Turned {
 
     fn shares_in(&self, what: What, low: f64, high: f64) -> Shares<'_> {
         let (from, to) = self.cells(low, high);
+        self.shares_of(what, from..to)
+    }
+
+    /// How much of every column something is true of in some rows of cells, as it is counted.
+    pub fn shares_of(&self, what: What, rows: Range<usize>) -> Shares<'_> {
         let each = self.counts(what);
-        Shares { rows: self.cells.rows(what, from, to), count: (to - from) as u32 * each, each }
+        Shares { rows: self.cells.rows(what, rows.start, rows.end), count: rows.len() as u32 * each, each }
     }
 
     fn shares(&self, what: What, columns: Range<usize>, low: f64, high: f64) -> Vec<f64> {

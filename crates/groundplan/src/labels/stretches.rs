@@ -8,6 +8,7 @@ use super::barriers;
 use super::corridors::{Strip, UNTOLD};
 use super::runs::best_pieces;
 use super::shares::{IMPASSABLE, Shares};
+use super::sums::What;
 use super::turned::Turned;
 use crate::bits::Bits;
 use std::cell::OnceCell;
@@ -60,6 +61,13 @@ impl Held {
         shortest.max(long * width)
     }
 
+    /// Where no more is seen at a side, nor along lines there if it is thin, no way of a width has such sides; in cells.
+    pub fn fewest(self, view: &Turned, width: f64) -> [f64; 2] {
+        // A column less, for what floats round.
+        let shortest = self.shortest(width) / view.cell - 1.0;
+        [LEAST_SEEN * shortest, if self == Self::Thin { LEAST_FACED * shortest } else { 0.0 }]
+    }
+
     /// Least share of a way's columns that are clear.
     fn least_clear(self) -> f64 {
         if self == Self::Thin { LEAST_CLEAR_THIN } else { LEAST_CLEAR }
@@ -68,6 +76,36 @@ impl Held {
 
 /// A way, what holds its sides, and whether walls at its ends have cut it.
 pub type Found = (Strip, Held, bool);
+
+/// A strip.
+#[derive(Clone, Copy)]
+pub struct Place {
+    pub across: [f64; 2],
+    /// The rows of cells from where on its sides may stand, of its borders, and up to where its sides may.
+    borders: [usize; 4],
+}
+
+impl Place {
+    pub fn new(view: &Turned, across: [f64; 2]) -> Self {
+        let [[below, low], [high, above]] = beyond(across);
+        let mut borders = [below, low, high, above].map(|v| view.border_across(v));
+        for n in 1..borders.len() {
+            borders[n] = borders[n].max(borders[n - 1]);
+        }
+        Self { across, borders }
+    }
+
+    /// The rows of cells in it.
+    fn inside(&self) -> Range<usize> {
+        self.borders[1]..self.borders[2]
+    }
+
+    /// Those in which its sides may stand.
+    pub fn sides(&self) -> [Range<usize>; 2] {
+        let [below, low, high, above] = self.borders;
+        [below..low, high..above]
+    }
+}
 
 /// A strip, asked column by column.
 pub struct Candidate<'a> {
@@ -83,8 +121,9 @@ struct Asked<'a> {
     view: &'a Turned,
     /// How wide each is, metres.
     width: f64,
-    /// Where the sides may stand, and the least cells that a column has there.
+    /// Where the sides may stand, the rows of cells there, and the least cells that a column has there.
     beyond: [[f64; 2]; 2],
+    sides: [Range<usize>; 2],
     deep: [u32; 2],
     blocked: Shares<'a>,
     /// Of blocked samples, the least for which nothing gets through.
@@ -114,28 +153,31 @@ struct Columns {
 }
 
 impl<'a> Asked<'a> {
-    fn new(view: &'a Turned, across: [f64; 2]) -> Self {
-        let blocked = view.blocked_in(across[0], across[1]);
+    fn new(view: &'a Turned, place: &Place) -> Self {
+        let across = place.across;
+        let blocked = view.shares_of(What::Blocked, place.inside());
         let closed = blocked.least(|share| share > IMPASSABLE);
-        let beyond = beyond(across);
-        let deep = beyond.map(|[low, high]| view.cells_in(low, high));
-        Self { view, width: across[1] - across[0], beyond, deep, blocked, closed }
+        let sides = place.sides();
+        let deep = sides.each_ref().map(|rows| rows.len() as u32);
+        Self { view, width: across[1] - across[0], beyond: beyond(across), sides, deep, blocked, closed }
     }
 
     /// Several of one width, the lowest first: what they have in common, between sides that may stand wherever one's may.
     /// Of its columns at least as much speaks for a way as of any one's.
-    fn common(view: &'a Turned, all: &[[f64; 2]]) -> Option<Self> {
-        let (first, last) = (*all.first()?, *all.last()?);
-        let most = all.iter().map(|own| view.cells_in(own[0], own[1])).max()?;
-        let blocked = view.blocked_in(last[0], first[1]).of_cells(most);
+    fn common(view: &'a Turned, all: &[Place]) -> Option<Self> {
+        let (first, last) = (all.first()?, all.last()?);
+        let most = all.iter().map(|own| own.inside().len()).max()? as u32;
+        let (from, to) = (last.inside().start, first.inside().end);
+        let blocked = view.shares_of(What::Blocked, from..to.max(from)).of_cells(most);
         let closed = blocked.least(|share| share > IMPASSABLE);
-        let sides = [beyond(first), beyond(last)];
-        let least =
-            |side: usize| all.iter().map(|own| beyond(*own)[side]).map(|[low, high]| view.cells_in(low, high)).min();
+        let least = |side: usize| all.iter().map(|own| own.sides()[side].len() as u32).min();
         let deep = [least(0)?, least(1)?];
-        let beyond = [[sides[0][0][0], sides[1][0][1]], [sides[0][1][0], sides[1][1][1]]];
-        let width = all.iter().map(|own| own[1] - own[0]).fold(f64::INFINITY, f64::min);
-        Some(Self { view, width, beyond, deep, blocked, closed })
+        let both = [first, last].map(|own| beyond(own.across));
+        let beyond = [0, 1].map(|side| [both[0][side][0], both[1][side][1]]);
+        let both = [first, last].map(Place::sides);
+        let sides = [0, 1].map(|side| both[0][side].start..both[1][side].end);
+        let width = all.iter().map(|own| own.across[1] - own.across[0]).fold(f64::INFINITY, f64::min);
+        Some(Self { view, width, beyond, sides, deep, blocked, closed })
     }
 
     /// In which columns of a stretch each side holds, and both do, where so many of them may be a way.
@@ -184,15 +226,15 @@ impl<'a> Asked<'a> {
 
     /// In which columns of a stretch a side holds.
     fn held(&self, stretch: &Stretch, by: Held, side: usize) -> Bits {
-        let [low, high] = self.beyond[side];
+        let rows = || self.sides[side].clone();
         let columns = || stretch.columns.clone();
         let deep = || {
-            let of = self.view.blocked_in(low, high).of_cells(self.deep[side]);
+            let of = self.view.shares_of(What::Blocked, rows()).of_cells(self.deep[side]);
             of.reached(columns(), of.least(|share| share >= HELD))
         };
         let mut held = stretch.deep[side].get_or_init(deep).clone();
         if by == Held::Thin {
-            held |= &self.view.occupied_in(low, high).reached(columns(), 1);
+            held |= &self.view.shares_of(What::Occupied, rows()).reached(columns(), 1);
             held.close(stretch.all(), (GAP / self.view.cell) as usize);
         }
         held
@@ -218,11 +260,11 @@ impl<'a> Asked<'a> {
 impl<'a> Candidate<'a> {
     /// What is no wider than `bay`, metres, may be a row of them.
     pub fn new(view: &'a Turned, across: [f64; 2], bay: f64) -> Self {
-        Self { view, across, bay: may_be_bay(across, bay), asked: Asked::new(view, across) }
+        Self { view, across, bay: may_be_bay(across, bay), asked: Asked::new(view, &Place::new(view, across)) }
     }
 
     /// False when none of several strips of one width, the lowest first, is a way.
-    pub fn may_be(view: &'a Turned, all: &[[f64; 2]], by: &[Held]) -> bool {
+    pub fn may_be(view: &'a Turned, all: &[Place], by: &[Held]) -> bool {
         let Some(common) = Asked::common(view, all) else { return false };
         let least = by.iter().map(|&by| common.least(by)).min().unwrap_or(1);
         let stretches = common.stretches(0..view.size[0], least, &[]);
@@ -353,17 +395,6 @@ pub fn ragged(view: &Turned, along: [f64; 2], across: [f64; 2], score: f64) -> S
     }
 }
 
-/// On fewer columns of all lines at a side together there is none of a way whose sides are thin.
-pub fn fewest_faced(view: &Turned) -> f64 {
-    // A column less, for what floats round.
-    LEAST_FACED * (VERY_LONG.0 / view.cell - 1.0)
-}
-
-/// In fewer columns nothing seen stands at a side of any way.
-pub fn fewest_seen(view: &Turned) -> f64 {
-    LEAST_SEEN * LONG.0 / view.cell
-}
-
 /// What is no wider than `bay`, metres, may be a row of empty bays.
 pub fn may_be_bay(across: [f64; 2], bay: f64) -> bool {
     across[1] - across[0] <= bay
@@ -416,8 +447,8 @@ mod tests {
             let mut ways = 0;
             for (width, n) in [1.2, 1.6, 2.0].into_iter().flat_map(|width| (0..80).map(move |n| (width, n))) {
                 let low = 2.0 + 0.05 * f64::from(n);
-                let pair = [low, low + 0.1].map(|low| [low, low + width]);
-                let is_way = |across: &[f64; 2]| !Candidate::new(&view, *across, 0.0).ways(&[Held::Deep]).is_empty();
+                let pair = [low, low + 0.1].map(|low| Place::new(&view, [low, low + width]));
+                let is_way = |place: &Place| !Candidate::new(&view, place.across, 0.0).ways(&[Held::Deep]).is_empty();
                 if pair.iter().any(is_way) {
                     ways += 1;
                     assert!(Candidate::may_be(&view, &pair, &[Held::Deep]), "{width} m wide from {low} m, {back} back");

@@ -306,8 +306,13 @@ impl Turned {
 
     /// The cells across between two places: from, to.
     pub(super) fn cells(&self, low: f64, high: f64) -> (usize, usize) {
-        let at = |v: f64| nearest(((v - self.start[1]) / self.cell).clamp(0.0, self.size[1] as f64));
-        (at(low), at(high).max(at(low)))
+        let [from, to] = [low, high].map(|v| self.border_across(v));
+        (from, to.max(from))
+    }
+
+    /// The border between rows of cells that is the nearest to place `v`.
+    pub fn border_across(&self, v: f64) -> usize {
+        nearest(((v - self.start[1]) / self.cell).clamp(0.0, self.size[1] as f64))
     }
 }
 
