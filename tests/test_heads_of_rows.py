@@ -77,6 +77,36 @@ def test_the_way_along_the_wall_is_known_though_the_last_bays_are_empty(empty: t
     assert kinds == ["L"] * 2 + ["T"] * 4
 
 
+@pytest.mark.parametrize(("early", "empty"), [((0.0, 2.5, 0.0, 2.5, 0.0), (0, 2, 4)), ((2.5, 0.0, 2.5, 0.0), (1, 3))])
+def test_the_way_along_the_wall_is_as_wide_as_the_longest_rows_leave(
+    early: tuple[float, ...], empty: tuple[int, ...]
+) -> None:
+    """Every second row is a bay short, and the last bays of the others are empty."""
+    ways = [label for label in hall(early, empty=empty).of_kind("corridor") if label["name"].startswith("C")]
+    assert [way["width"] for way in ways] == pytest.approx([3.0], abs=0.2)
+
+
+@pytest.mark.parametrize("rows", [2, 3])
+@pytest.mark.parametrize("gap", [2.4, 3.6])
+def test_a_way_leads_past_rows_that_end_before_a_corner_of_the_hall(rows: int, gap: float) -> None:
+    """Rows 1.2 m deep between aisles of 3 m: some end before a corner, the others go on past it."""
+    y, x = np.mgrid[-1.0 : 4.2 * (rows + 2) + 4.0 : 0.05, -1.0:41.0:0.05] + 0.025
+    depth = 4.2 * (rows + 2) + 3.0
+    picture = np.full(x.shape, 205, dtype=np.uint8)
+    corner = 4.2 * rows
+    is_hall = (x > 0) & (y > 0) & (y < depth) & (x < np.where(y < corner, 28.0, 40.0))
+    near = (x > -0.2) & (y > -0.2) & (y < depth + 0.2) & (x < np.where(y < corner, 28.2, 40.2))
+    picture[near] = 0
+    picture[is_hall] = 254
+    for row in range(rows + 2):
+        low = 3.0 + 4.2 * row
+        end = 28.0 - gap if row < rows else 37.0
+        picture[(x > 3.0) & (x < end) & (y > low) & (y < low + 1.2)] = 0
+    survey = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=0.05)
+    beside = [label for label in survey.of_kind("junction") if abs(label["at"][0] - (28.5 - gap / 2)) < 1.0]
+    assert sorted(label["type"] for label in beside) == ["L"] + ["T"] * rows
+
+
 def test_boxes_on_both_faces_of_a_row_are_not_its_end() -> None:
     survey = hall((0.0, 0.0, 0.0), boxes=((39.0, 3.0), (39.0, 4.5)))
     ways = [label for label in survey.of_kind("corridor") if label["name"].startswith("C")]

@@ -20,8 +20,10 @@ use std::iter;
 /// What shares so much of a row's depth leads into it.
 const ENTERS: f64 = 0.35;
 /// A strip is a way through all the rows that it finds free when, by how seldom each of them is free elsewhere, fewer
-/// such than this would be expected of all places; and one that is like bays only then.
+/// such than this would be expected of all places; and one that is like bays only then, or past the ends of all that it
+/// crosses, where most halls have a way.
 const EXPECTED: (f64, f64) = (0.05, 0.005);
+const AT_ENDS: f64 = 0.03;
 /// Where posts recur along the rows, and not across them too, what crosses them is no more than so many times as long as
 /// the shorter of the two corridors beside a row: short ones between the goods of racks do not make bays of the aisles.
 const LONGER: f64 = 4.0;
@@ -252,7 +254,8 @@ fn cross(
 /// A strip's pieces between the rows that it has no way through.
 fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
     let expected = by_chance(&crossed);
-    if strip.bays && expected >= EXPECTED.1 {
+    let is_past_ends = crossed.iter().all(|row| row.at_end && row.way);
+    if strip.bays && expected >= if is_past_ends { AT_ENDS } else { EXPECTED.1 } {
         return Vec::new();
     }
     for row in crossed.iter_mut().filter(|row| expected < EXPECTED.0 && row.free.is_some()) {
@@ -308,9 +311,9 @@ mod tests {
         Crossed { along, outer, way: is_open, open: is_open, at_end: false, free: None, between: Vec::new() }
     }
 
-    /// The pieces of a strip from 0 to 40 m that crosses rows.
-    fn pieces(rows: &[Crossed]) -> Vec<[f64; 2]> {
-        let strip = Strip {
+    /// From 0 to 40 m.
+    fn strip() -> Strip {
+        Strip {
             direction: 0,
             along: [0.0, 40.0],
             across: [0.0, 3.0],
@@ -319,8 +322,23 @@ mod tests {
             is_ragged: false,
             unseen: [false; 2],
             held: UNTOLD,
+        }
+    }
+
+    /// The pieces of a strip that crosses rows.
+    fn pieces(rows: &[Crossed]) -> Vec<[f64; 2]> {
+        ways(strip(), rows.to_vec()).into_iter().map(|piece| piece.along).collect()
+    }
+
+    #[test]
+    fn what_is_as_bays_may_lead_past_two_rows_that_are_seldom_free() {
+        let is_way = |at_end: bool, free: f64| {
+            let free = Some(Free { free, places: 20.0 });
+            let crossed = [[1.5, 6.5], [6.5, 11.5]].map(|along| Crossed { at_end, free, ..row(along, true) });
+            !ways(Strip { bays: true, ..strip() }, crossed.to_vec()).is_empty()
         };
-        ways(strip, rows.to_vec()).into_iter().map(|piece| piece.along).collect()
+        assert!(is_way(true, 1.0) && !is_way(false, 1.0));
+        assert!(!is_way(true, 4.0));
     }
 
     #[test]

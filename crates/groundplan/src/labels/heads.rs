@@ -12,7 +12,7 @@ use super::shut;
 use super::stretches;
 use super::turned::Turned;
 use crate::bands::flat_map_each;
-use crate::ends::sorted;
+use crate::ends::{around, sorted};
 use crate::grid::Frame;
 use crate::parameters::Parameters;
 use std::collections::{BTreeMap, BTreeSet};
@@ -32,6 +32,8 @@ const BAY: f64 = 1.15;
 /// The longest row and what fills the shortest one differ by so much, metres: where rows end alike and are full up to
 /// there, a line is the way's side.
 const APART: f64 = 0.6;
+/// A way in which so many of these rows end, and one in so many, is too wide.
+const ENDING: usize = 3;
 /// A wall closes a row where so much of what lies along the wall is not free.
 const CLOSED: f64 = 0.5;
 /// A way is so many times as wide as the aisles that lead to it.
@@ -48,8 +50,11 @@ pub fn with(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
         for chain in chains(strips, rows, view.direction) {
             for side in [0, 1] {
                 let heads = Heads { look, frame, view, other, strips, side, parameters, threads: evidence.threads };
-                for way in heads.ways(&chain) {
-                    known.add(way);
+                for Head { led, free } in heads.ways(&chain) {
+                    let end_in = |way: &Strip| free.iter().filter(|free| way.width() - **free >= APART).count();
+                    let least = (free.len() / ENDING).max(ROWS);
+                    known.narrow(&led.way, |way| end_in(way) >= least);
+                    known.add(led);
                 }
             }
         }
@@ -84,6 +89,12 @@ fn chains(strips: &[Strip], rows: &[Row], direction: usize) -> Vec<Vec<Between>>
     chains
 }
 
+/// A way before the heads of rows, and how far each of these ends before the wall, metres.
+struct Head {
+    led: Led,
+    free: Vec<f64>,
+}
+
 /// One side of the aisles of a direction.
 struct Heads<'a> {
     look: &'a Look<'a>,
@@ -98,7 +109,7 @@ struct Heads<'a> {
 
 impl Heads<'_> {
     /// The ways between a wall and the rows of a chain that end before it.
-    fn ways(&self, chain: &[Between]) -> Vec<Led> {
+    fn ways(&self, chain: &[Between]) -> Vec<Head> {
         let least = self.parameters.labels_min_width;
         let before = |row: &Between| {
             let wall = self.wall_of(row.aisles)?;
@@ -118,18 +129,17 @@ impl Heads<'_> {
                 let of =
                     |value: fn((f64, f64, f64)) -> f64| ends[from..to].iter().flatten().map(move |&end| value(end));
                 let wall = of(|(wall, ..)| wall).sum::<f64>() / (to - from) as f64;
-                let frees = of(|(_, free, _)| free);
+                let free: Vec<f64> = of(|(_, free, _)| free).collect();
                 let empty = of(|(.., empty)| empty).fold(0.0, f64::max);
-                let [width, most] =
-                    frees.fold([f64::INFINITY, 0.0], |[low, high], free| [low.min(free), high.max(free)]);
+                let [width, most] = around(free.iter().copied());
                 // Empty bays have their uprights: where one row has none for longer, it ends there.
                 let are_bays = self.view.pitch.is_some_and(|pitch| most <= BAY * pitch);
                 if empty - width >= APART && !are_bays {
-                    found.extend(self.way(&chain[from..to], wall, width));
+                    found.extend(self.way(&chain[from..to], wall, width).map(|led| Head { led, free }));
                 }
             } else if let Some((wall, width, _)) = ends[from].filter(|&(wall, ..)| self.leads_past(&chain[from], wall))
             {
-                found.extend(self.way(&chain[from..=from], wall, width));
+                found.extend(self.way(&chain[from..=from], wall, width).map(|led| Head { led, free: vec![width] }));
             }
             from = to.max(from + 1);
         }

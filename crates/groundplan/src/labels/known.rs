@@ -46,7 +46,18 @@ impl Known {
         self.is_more = true;
     }
 
-    /// All, if there are more than there were.
+    /// With what is known beside a way as narrow as that, where it is too wide.
+    pub fn narrow(&mut self, way: &Strip, is_too_wide: impl Fn(&Strip) -> bool) {
+        for n in self.placed[way.direction].touching(way.along, way.across) {
+            let known = self.ways[n].as_mut().filter(|known| ragged::is_beside(known, way));
+            if let Some(known) = known.filter(|known| is_too_wide(known)) {
+                known.across = way.across;
+                self.is_more = true;
+            }
+        }
+    }
+
+    /// All, if there are more than there were, or other ones.
     pub fn with_more(self) -> Option<Vec<Strip>> {
         self.is_more.then(|| self.ways.into_iter().flatten().collect())
     }

@@ -79,7 +79,8 @@ pub fn are_alike(one: f64, other: f64) -> bool {
     (one - other).abs() <= ALIKE * other
 }
 
-/// The strips without those that lead through some rows of a place and have no width of what leads through all: bays; nor
+/// The strips without those that lead through some rows of a place, not past the ends of several that one goes on farther
+/// than, and have no width of what leads through all: bays; nor
 /// those at a wall that the rows beside go on to. Where nothing leads through all but past their ends, what has no bays'
 /// width is none, nor what leads through rows of two racks that are open more often than by chance; where something does, what
 /// lies as empty bays do is one. Nor those beside which, with no rack between, one leads through more rows.
@@ -103,10 +104,14 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
                 continue;
             }
             let (known, is_told_within) = &told[parts[place.first_of(own).unwrap_or(own.rows[0])]];
-            let is_some = !own.next.is_empty() && !known.is_empty();
+            let width = strips[n].width();
+            let may_be_bay = || view.pitch.is_some_and(|pitch| is_as_bays(width, pitch));
+            // Rows may end before one that goes on farther: what leads past their ends is as wide as the hall leaves.
+            let may_lead_past = own.rows.len() > 1 && !own.is_within && own.next.len() == 1;
+            let is_past_ends = may_lead_past && !(*is_told_within && may_be_bay());
+            let is_some = !own.next.is_empty() && !known.is_empty() && !is_past_ends;
             // Where the rows beside it go on to the wall, one that does not is empty there.
             let is_bay = || own.rows.len() == 1 && !own.is_led_on && is_at_wall(other, &strips[n]);
-            let width = strips[n].width();
             // Ways past the rows' ends are as wide as the hall leaves, and tell nothing of what leads through the rows.
             let is_no_bay = || {
                 !*is_told_within
@@ -116,7 +121,6 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
                     ) || place.is_open_through(&strips, own, width))
             };
             let is_as_bays_lie = || alone.is_as_bays_lie(&place, &strips, own, width);
-            let may_be_bay = || view.pitch.is_some_and(|pitch| is_as_bays(width, pitch));
             let is_empty = || *is_told_within && may_be_bay() && empties::is_empty(&place, &strips, n);
             let lies_as_bays = || is_as_bays_lie() || is_empty();
             stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && !is_bay() && !lies_as_bays());
