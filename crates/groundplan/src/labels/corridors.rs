@@ -51,7 +51,7 @@ impl Strip {
 
     /// Too short to be a way by itself.
     pub fn is_short(&self) -> bool {
-        self.length() < ALONE.1.max(ALONE.0 * self.width())
+        is_short(self.length(), self.width())
     }
 
     /// True when another is as wide.
@@ -76,6 +76,11 @@ pub const ALONE: (f64, f64) = (2.0, 5.0);
 pub const ALIKE: f64 = 0.2;
 /// Strips whose directions differ by an angle of a smaller sine run nearly the same way.
 pub const ASKEW: f64 = 0.5;
+
+/// True when what is so long and so wide, metres, is too short to be a way by itself.
+pub fn is_short(length: f64, width: f64) -> bool {
+    length < ALONE.1.max(ALONE.0 * width)
+}
 
 /// The width of the widest, metres.
 pub fn widest(strips: &[Strip]) -> f64 {

@@ -24,6 +24,8 @@ const ENTERS: f64 = 0.35;
 /// crosses, where most halls have a way.
 const EXPECTED: (f64, f64) = (0.05, 0.005);
 const AT_ENDS: f64 = 0.03;
+/// Past the ends of rows a way is held by these, but for the mouths of aisles, along so much of it.
+const HELD: f64 = 0.9;
 /// Where posts recur along the rows, and not across them too, what crosses them is no more than so many times as long as
 /// the shorter of the two corridors beside a row: short ones between the goods of racks do not make bays of the aisles.
 const LONGER: f64 = 4.0;
@@ -82,7 +84,7 @@ fn is_deep(views: &[Turned], strip: &Strip, strips: &[Strip], placed: &[Beside])
 /// What uprights of the rows that a strip crosses leave of it, where they stand in it in most of them: a line along it was
 /// no side of it, but that of what stands in other rows.
 fn left_between(strip: &Strip, crossed: &[Crossed]) -> Option<[f64; 2]> {
-    let within: Vec<_> = crossed.iter().filter(|row| !row.at_end).collect();
+    let within: Vec<_> = crossed.iter().filter(|row| !row.at_end()).collect();
     let open = within.iter().filter(|row| row.open).count();
     if within.len() < 2 || 2 * open >= within.len() {
         return None;
@@ -188,6 +190,14 @@ fn is_narrow(strips: &[Strip], placed: &[Beside], n: usize, aisles: [&Strip; 2])
     strips[n].width() < least && !connected::is_one_of_many(strips, placed, n)
 }
 
+/// What a strip passes of a row: what lies between its ends, an end, or the end of one of which nothing lies in the strip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Passes {
+    Within,
+    End,
+    Before,
+}
+
 /// A row that a strip leads across: in the strip's own places, and whether there is a way.
 #[derive(Clone, Debug)]
 struct Crossed {
@@ -199,8 +209,7 @@ struct Crossed {
     way: bool,
     /// There may be one, if the strip is one elsewhere.
     open: bool,
-    /// It passes the row's end.
-    at_end: bool,
+    passes: Passes,
     /// Where nothing stands in the row between the strip's sides: where else it is so.
     free: Option<Free>,
     /// From where to where nothing stands in the row within the strip, across.
@@ -208,9 +217,13 @@ struct Crossed {
 }
 
 impl Crossed {
+    fn at_end(&self) -> bool {
+        self.passes != Passes::Within
+    }
+
     /// Of a strip that is too narrow for a way: past the row's end one may lead still.
     fn closed(self) -> Self {
-        if self.at_end { self } else { Self { way: false, open: false, free: None, ..self } }
+        if self.at_end() { self } else { Self { way: false, open: false, free: None, ..self } }
     }
 }
 
@@ -234,8 +247,13 @@ fn cross(
         return None;
     }
     let sides = [u - reach, u + reach];
-    let passes = columns.lets_through(sides);
+    let leads_through = columns.lets_through(sides);
     let at_end = sides[0] <= row.along[0] + view.cell || sides[1] >= row.along[1] - view.cell;
+    let passes = match at_end {
+        true if columns.reaches(sides) => Passes::End,
+        true => Passes::Before,
+        false => Passes::Within,
+    };
     let way = if at_end { columns.may_end_at(sides) } else { ways.iter().any(|way| way[0] < u && u < way[1]) };
     let free = columns.is_free(sides).then(|| columns.free_elsewhere(sides));
     let across = |u: f64| other.place(view.to_map([u, middle]))[1];
@@ -244,8 +262,8 @@ fn cross(
         along: along_of(between.map(Strip::middle)),
         outer: along_of([between[0].across[0], between[1].across[1]]),
         way,
-        open: way || passes,
-        at_end,
+        open: way || leads_through,
+        passes,
         free,
         between: open.iter().map(|&ends| shared(sorted(ends.map(across)), strip.across)).filter(is_wide).collect(),
     })
@@ -254,15 +272,16 @@ fn cross(
 /// A strip's pieces between the rows that it has no way through.
 fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
     let expected = by_chance(&crossed);
-    let is_past_ends = crossed.iter().all(|row| row.at_end && row.way);
-    if strip.bays && expected >= if is_past_ends { AT_ENDS } else { EXPECTED.1 } {
+    let are_ends = crossed.iter().all(|row| row.at_end() && row.way);
+    let least = if are_ends { AT_ENDS } else { EXPECTED.1 };
+    if strip.bays && expected >= least && !(are_ends && is_long_before(&strip, &crossed)) {
         return Vec::new();
     }
     for row in crossed.iter_mut().filter(|row| expected < EXPECTED.0 && row.free.is_some()) {
         (row.way, row.open) = (true, true);
     }
-    if crossed.iter().any(|c| c.at_end && c.way) {
-        crossed.retain(|c| !c.at_end);
+    if crossed.iter().any(|c| c.at_end() && c.way) {
+        crossed.retain(|c| !c.at_end());
     }
     if crossed.is_empty() {
         return vec![strip];
@@ -285,10 +304,20 @@ fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
     through.into_iter().chain(beyond).map(|along| Strip { along, ..strip.clone() }).collect()
 }
 
+/// True when a strip past the ends of rows is long enough for a way by itself without what leads through those that reach into it:
+/// before the others nothing of them lies in it that could be bays.
+fn is_long_before(strip: &Strip, crossed: &[Crossed]) -> bool {
+    let (before, reaching): (Vec<_>, Vec<_>) = crossed.iter().partition(|row| row.passes == Passes::Before);
+    let through: f64 = reaching.iter().map(|row| row.along[1] - row.along[0]).sum();
+    !before.is_empty()
+        && !corridors::is_short(strip.length() - through, strip.width())
+        && strip.score >= HELD * strip.length()
+}
+
 /// How many places would be expected at which as many rows are free by chance (as of alignments, Desolneux, Moisan and
 /// Morel 2000).
 fn by_chance(crossed: &[Crossed]) -> f64 {
-    let rows = || crossed.iter().filter_map(|row| row.free.map(|free| (row.at_end, free)));
+    let rows = || crossed.iter().filter_map(|row| row.free.map(|free| (row.at_end(), free)));
     if rows().count() < 2 {
         return f64::INFINITY;
     }
@@ -308,7 +337,7 @@ mod tests {
     /// A row between two aisles of 3 m, from one's middle to the other's.
     fn row(along: [f64; 2], is_open: bool) -> Crossed {
         let outer = [along[0] - 1.5, along[1] + 1.5];
-        Crossed { along, outer, way: is_open, open: is_open, at_end: false, free: None, between: Vec::new() }
+        Crossed { along, outer, way: is_open, open: is_open, passes: Passes::Within, free: None, between: Vec::new() }
     }
 
     /// From 0 to 40 m.
@@ -332,13 +361,24 @@ mod tests {
 
     #[test]
     fn what_is_as_bays_may_lead_past_two_rows_that_are_seldom_free() {
-        let is_way = |at_end: bool, free: f64| {
+        let is_way = |passes: Passes, free: f64| {
             let free = Some(Free { free, places: 20.0 });
-            let crossed = [[1.5, 6.5], [6.5, 11.5]].map(|along| Crossed { at_end, free, ..row(along, true) });
+            let crossed = [[1.5, 6.5], [6.5, 11.5]].map(|along| Crossed { passes, free, ..row(along, true) });
             !ways(Strip { bays: true, ..strip() }, crossed.to_vec()).is_empty()
         };
-        assert!(is_way(true, 1.0) && !is_way(false, 1.0));
-        assert!(!is_way(true, 4.0));
+        assert!(is_way(Passes::End, 1.0) && !is_way(Passes::Within, 1.0));
+        assert!(!is_way(Passes::End, 4.0));
+    }
+
+    #[test]
+    fn what_is_as_bays_is_a_way_where_it_is_held_and_rows_end_before_it() {
+        let is_way = |score: f64, passes: Passes| {
+            let one = Crossed { passes: Passes::End, ..row([1.5, 6.5], true) };
+            let two = Crossed { passes, ..row([6.5, 39.0], true) };
+            !ways(Strip { bays: true, score, ..strip() }, vec![one, two]).is_empty()
+        };
+        assert!(is_way(40.0, Passes::Before));
+        assert!(!is_way(20.0, Passes::Before) && !is_way(40.0, Passes::End));
     }
 
     #[test]

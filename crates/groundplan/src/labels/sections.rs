@@ -184,6 +184,12 @@ impl<'a> Columns<'a> {
         self.pitch.is_none_or(|pitch| sides[1] - sides[0] > NARROW * pitch) && !(first..last).any(|n| self.stops[n])
     }
 
+    /// True when some of the row lies between two sides, but for what stands at these.
+    pub fn reaches(&self, sides: [f64; 2]) -> bool {
+        let (first, last) = self.inner(sides);
+        first < last
+    }
+
     /// True when nothing stands in the row between two sides that one could not walk round.
     pub fn is_free(&self, sides: [f64; 2]) -> bool {
         let (first, last) = self.inner(sides);
