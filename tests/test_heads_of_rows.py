@@ -107,6 +107,30 @@ def test_a_way_leads_past_rows_that_end_before_a_corner_of_the_hall(rows: int, g
     assert sorted(label["type"] for label in beside) == ["L"] + ["T"] * rows
 
 
+@pytest.mark.parametrize("bay", [1.8, 2.7, 3.6])
+def test_no_way_leads_past_rows_at_a_wall_of_which_two_have_their_last_bays_empty(bay: float) -> None:
+    """Three rows of five bays stand against the east wall, the first full up to there; posts stand between bays."""
+    cell = 0.05
+    bay_px, aisle, depth = round(bay / cell), 60, 20
+    picture = np.full((3 * depth + 4 * aisle + 40, aisle + 5 * bay_px + 40), 205, np.uint8)
+    picture[18:-18, 18:-18] = 0
+    picture[20:-20, 20:-20] = 254
+    for row in range(3):
+        low = 20 + aisle + row * (aisle + depth)
+        for n in range(6):
+            post = min(20 + aisle + n * bay_px, picture.shape[1] - 22)
+            for edge in (low, low + depth - 2):
+                picture[edge : edge + 2, post : post + 2] = 0
+        for n in range(5):
+            if (n < 4 or row == 0) and (n + row) % 4 != 1:
+                start = 20 + aisle + n * bay_px
+                picture[low + 1 : low + depth - 1, start + 4 : start + bay_px // 2 - 1] = 0
+                picture[low + 1 : low + depth - 1, start + bay_px // 2 + 1 : start + bay_px - 3] = 0
+    survey = groundplan.survey(picture, resolution=cell)
+    at_wall = [label for label in survey.of_kind("junction") if label["at"][0] > 4.0 + 3.0 * bay]
+    assert [label["type"] for label in at_wall] == ["end"] * 4
+
+
 def test_boxes_on_both_faces_of_a_row_are_not_its_end() -> None:
     survey = hall((0.0, 0.0, 0.0), boxes=((39.0, 3.0), (39.0, 4.5)))
     ways = [label for label in survey.of_kind("corridor") if label["name"].startswith("C")]

@@ -86,6 +86,25 @@ def test_the_pitch_of_racks_is_a_bay_and_not_a_pallet(seed: int) -> None:
     assert all(min(rack["phase"], rack["pitch"] - rack["phase"]) < 0.4 for rack in racks)
 
 
+@pytest.mark.parametrize("shelf", [20, 24, 28])
+def test_the_pitch_of_shelves_is_one_shelf_though_it_is_no_longer_than_a_pallet(shelf: int) -> None:
+    # Three rows of 13 shelves of 1 to 1.4 m, one in five of them empty.
+    draws = np.random.default_rng(0)
+    depth, gap, count = 12, 60, 13
+    picture = np.full((3 * depth + 4 * gap + 40, count * shelf + 2 * gap + 40), 205, np.uint8)
+    picture[18:-18, 18:-18] = 0
+    picture[20:-20, 20:-20] = 254
+    for low in range(20 + gap, 20 + 3 * (depth + gap), depth + gap):
+        row = picture[low : low + depth, 20 + gap :]
+        for post in range(0, (count + 1) * shelf, shelf):
+            row[[0, 1, -2, -1], post : post + 2] = 0
+        for start in range(0, count * shelf, shelf):
+            if draws.random() < 0.8:
+                row[1:-1, start + 3 : start + shelf - 1] = 0
+    racks = groundplan.survey(picture, resolution=0.05).of_kind("rack")
+    assert [rack["pitch"] for rack in racks] == pytest.approx([shelf * 0.05] * 3, abs=0.05)
+
+
 def test_a_pattern_of_bays_lies_on_the_posts() -> None:
     _, survey = wide()
     bays = [pattern for pattern in survey.patterns if pattern["kind"] == "bays"]

@@ -35,9 +35,9 @@ const CLEAR: f64 = 1.5;
 const AS_GOOD: f64 = 0.5;
 /// The common power stands out of the median by this factor.
 const CONTRAST: f64 = 1.8;
-/// Goods recur at a whole part of a bay, but for this share.
+/// Goods recur at a whole part of a bay, but for this share of how many stand in one.
 const PART: f64 = 0.08;
-/// A row is so many of them long, but for this share of one.
+/// A row is so many goods long, but for this share of one.
 const WHOLE: f64 = 0.3;
 /// That all rows are as many bays long comes of chance no more often than this.
 const CHANCE: f64 = 0.25;
@@ -57,12 +57,15 @@ pub fn find(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Option<P
         drop(specks);
         let Some(common) = common(&places, evidence) else { continue };
         let told = view.pitch.and_then(|bay| whole(bay / common));
-        // What is longer than beams are recurs by chance, unless posts tell it.
+        // What is longer than most beams are recurs by chance as a rule, unless posts tell it.
         if common > pitch::LONGEST && told.is_none() {
             continue;
         }
-        let lengths = own.iter().map(|&n| rows[n].length() / common);
-        let times = by_lengths(lengths, (pitch::LONGEST / common) as usize).or(told).unwrap_or(1);
+        let lengths: Vec<usize> = own.iter().filter_map(|&n| nearly_whole(rows[n].length() / common)).collect();
+        // A bay shorter than any that is looked for among posts is told as some of them: then rows are of any number.
+        let fit = |times: &usize| 2 * lengths.iter().filter(|length| *length % times == 0).count() >= lengths.len();
+        let most = (pitch::LONGEST / common + WHOLE) as usize;
+        let times = by_lengths(&lengths, most).or(told.filter(fit)).unwrap_or(1);
         let periods = map_each(own.len(), evidence.threads, |m| {
             let (places, along) = (&places[m], rows[own[m]].along);
             let key = || Key::default().numbers(places).number(common).with(times as u64).numbers(&along);
@@ -123,19 +126,21 @@ fn common(rows: &[Vec<f64>], evidence: &Evidence) -> Option<f64> {
         .map(|(_, pitch)| pitch)
 }
 
-/// A whole number, where a number is one but for a share of it.
+/// The whole number nearest to a number, if that is off by no more than its part.
 fn whole(number: f64) -> Option<usize> {
     let whole = number.round();
     (whole >= 1.0 && (number - whole).abs() <= PART * whole).then_some(whole as usize)
 }
 
-/// How many times what recurs recurs from post to post, and no more times than some, by how many times it fits into each row:
-/// racks begin and end at posts, so that all are as many bays long, be it that one was seen in part.
-fn by_lengths(lengths: impl Iterator<Item = f64>, most: usize) -> Option<usize> {
-    let lengths: BTreeSet<usize> = lengths
-        .filter(|length| (length - length.round()).abs() <= WHOLE)
-        .map(|length| length.round() as usize)
-        .collect();
+/// How many goods a row is long, if it ends where they do.
+fn nearly_whole(length: f64) -> Option<usize> {
+    ((length - length.round()).abs() <= WHOLE).then(|| length.round() as usize)
+}
+
+/// How many goods stand in a bay, some at most, told by how many of them the rows are long: racks begin and end at posts, so
+/// that all are whole bays long, be it that one was seen in part.
+fn by_lengths(lengths: &[usize], most: usize) -> Option<usize> {
+    let lengths: BTreeSet<usize> = lengths.iter().copied().collect();
     let chance = |times: usize| {
         let fitting = lengths.iter().filter(|length| *length % times == 0).count();
         let others = lengths.len() - fitting;
@@ -149,7 +154,7 @@ fn by_lengths(lengths: impl Iterator<Item = f64>, most: usize) -> Option<usize> 
 /// A row's own pitch near the common one. Posts are narrow: their harmonics tell it more finely than they do
 /// themselves.
 ///
-/// What recurs, so many times in a bay, says how clearly it does. At one of its places stand posts: a row ends at these.
+/// What recurs, so many times in a bay, says how clearly it does. Posts stand at the first place of each bay: a row ends at these.
 fn of_row(places: &[f64], common: f64, times: usize, along: [f64; 2]) -> Option<Period> {
     // Two bays at least, and posts enough for them.
     let (common, length) = (times as f64 * common, along[1] - along[0]);
@@ -180,7 +185,9 @@ mod tests {
 
     #[test]
     fn rows_of_whole_bays_tell_how_often_goods_stand_in_one() {
-        let times = |lengths: &[f64]| by_lengths(lengths.iter().copied(), 3);
+        let times = |lengths: &[f64]| {
+            by_lengths(&lengths.iter().filter_map(|&length| nearly_whole(length)).collect::<Vec<_>>(), 3)
+        };
         // Of rows of one length nothing is told.
         assert_eq!(times(&[12.1; 8]), None);
         assert_eq!(times(&[12.1, 12.0, 8.1, 6.2, 3.9]), Some(2));

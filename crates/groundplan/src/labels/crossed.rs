@@ -20,9 +20,9 @@ use std::iter;
 /// What shares so much of a row's depth leads into it.
 const ENTERS: f64 = 0.35;
 /// A strip is a way through all the rows that it finds free when, by how seldom each of them is free elsewhere, fewer
-/// such than this would be expected of all places; and one that is like bays only then, or past the ends of all that it
-/// crosses, where most halls have a way.
+/// such than this would be expected of all places; and one that is like bays only then.
 const EXPECTED: (f64, f64) = (0.05, 0.005);
+/// The same of one that is like bays and leads past the ends of all rows that it crosses, where most halls have a way.
 const AT_ENDS: f64 = 0.03;
 /// Past the ends of rows a way is held by these, but for the mouths of aisles, along so much of it.
 const HELD: f64 = 0.9;

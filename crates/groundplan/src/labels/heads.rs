@@ -32,7 +32,7 @@ const BAY: f64 = 1.15;
 /// The longest row and what fills the shortest one differ by so much, metres: where rows end alike and are full up to
 /// there, a line is the way's side.
 const APART: f64 = 0.6;
-/// A way in which so many of these rows end, and one in so many, is too wide.
+/// A way in which one in so many of these rows ends, and `ROWS` at least, is too wide.
 const ENDING: usize = 3;
 /// A wall closes a row where so much of what lies along the wall is not free.
 const CLOSED: f64 = 0.5;
@@ -52,7 +52,7 @@ pub fn with(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
                 let heads = Heads { look, frame, view, other, strips, side, parameters, threads: evidence.threads };
                 for Head { led, free } in heads.ways(&chain) {
                     let end_in = |way: &Strip| free.iter().filter(|free| way.width() - **free >= APART).count();
-                    let least = (free.len() / ENDING).max(ROWS);
+                    let least = free.len().div_ceil(ENDING).max(ROWS);
                     known.narrow(&led.way, |way| end_in(way) >= least);
                     known.add(led);
                 }

@@ -46,7 +46,7 @@ impl Known {
         self.is_more = true;
     }
 
-    /// With what is known beside a way as narrow as that, where it is too wide.
+    /// With the sides of a way for those of what is known beside it, where that is too wide; where it leads stays as it was.
     pub fn narrow(&mut self, way: &Strip, is_too_wide: impl Fn(&Strip) -> bool) {
         for n in self.placed[way.direction].touching(way.along, way.across) {
             let known = self.ways[n].as_mut().filter(|known| ragged::is_beside(known, way));

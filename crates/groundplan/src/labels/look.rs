@@ -70,7 +70,7 @@ impl<'a> Look<'a> {
         Ahead { way, tiles: self.tiles_ahead(across, way) }
     }
 
-    /// The same one way, in rows of so many tiles.
+    /// How many tiles follow each one way; so many lie across to a row.
     fn tiles_ahead(&self, across: usize, way: usize) -> Vec<u8> {
         let mut ahead = vec![0; self.tiles.len()];
         let more =

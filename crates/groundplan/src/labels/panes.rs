@@ -89,16 +89,16 @@ impl Turned {
 
     /// In which columns the panes in a line lie through which nothing but rays is seen on a side.
     fn panes_in(&self, line: usize, outside: usize, beyond: &Bits) -> Vec<Range<usize>> {
-        let mut walls = self.covered[line].joined(0..self.size[0], self.columns_of(GAP));
-        walls.retain(|wall| wall.len() >= self.columns_of(WALL));
-        let long = self.columns_of(LONG.0)..=self.columns_of(LONG.1);
+        let mut walls = self.covered[line].joined(0..self.size[0], self.in_columns(GAP));
+        walls.retain(|wall| wall.len() >= self.in_columns(WALL));
+        let long = self.in_columns(LONG.0)..=self.in_columns(LONG.1);
         let is_outermost = |gap: &Range<usize>| beyond.count(gap.clone()) as f64 <= HIT * gap.len() as f64;
         let gaps = walls.windows(2).map(|pair| pair[0].end..pair[1].start).filter(|gap| long.contains(&gap.len()));
         gaps.filter(is_outermost).filter(|gap| self.is_pane(line, gap, outside)).collect()
     }
 
     /// Columns of so many metres.
-    fn columns_of(&self, metres: f64) -> usize {
+    fn in_columns(&self, metres: f64) -> usize {
         (metres / self.cell).round() as usize
     }
 
@@ -112,10 +112,10 @@ impl Turned {
             let [low, high] = behind(off, side);
             self.mean_blocked(columns.clone(), low, high)
         };
-        let margin = self.columns_of(GAP);
+        let margin = self.in_columns(GAP);
         let inner = gap.start + margin..gap.end - margin.min(gap.len().saturating_sub(margin + 1));
         let around = |off: f64| {
-            gap.start.saturating_sub(self.columns_of(off))..(gap.end + self.columns_of(off)).min(self.size[0])
+            gap.start.saturating_sub(self.in_columns(off))..(gap.end + self.in_columns(off)).min(self.size[0])
         };
         let [near, far] = [WALL, SPREAD[1]].map(around);
         let beside = [near.start..gap.start - margin, gap.end + margin..near.end];
@@ -123,7 +123,7 @@ impl Turned {
             let [low, high] = behind([0, 1].map(|n| NEAR[0] + (row + n) as f64 * self.cell), side);
             self.share_touched(far.clone(), low, high) > 0.0
         };
-        let rows = self.columns_of(FAR);
+        let rows = self.in_columns(FAR);
         let [low, top] = [self.start[1], self.start[1] + self.size[1] as f64 * self.cell];
         let end = if side == 0 { across - low } else { top - across };
         [side, 1 - side].into_iter().all(|side| blocked(&inner, NEAR, side) <= CLEAR)

@@ -65,6 +65,13 @@ impl Place<'_> {
             || own.rows.iter().all(may_be_led_through) && seldom::are_open(self.views[0], rows(), width)
     }
 
+    /// True when a row goes on past both sides of a strip that would cross it, by so much, metres.
+    pub fn goes_past(&self, row: usize, strip: &Strip, by: f64) -> bool {
+        let ([view, other], (row, _)) = (self.views, &self.rows[row]);
+        let middle = f64::midpoint(row.across[0], row.across[1]);
+        strip.across.iter().all(|&side| holds(wider(row.along, -by), view.crossing(other, middle, side)[1]))
+    }
+
     /// The first row that something passes through, but for walls between halls.
     pub fn first_of(&self, own: &Passing) -> Option<usize> {
         own.rows.iter().copied().find(|&row| !self.walls[row])

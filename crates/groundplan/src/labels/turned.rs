@@ -289,7 +289,7 @@ impl Turned {
         whole((u - self.start[0]) / self.cell).min(self.size[0] - 1)
     }
 
-    /// The columns from the one that holds a place to the one that holds another, both included.
+    /// The columns from the one that holds a place to the one that holds another, both included; the lower place first.
     pub fn columns(&self, [from, to]: [f64; 2]) -> Range<usize> {
         self.column(from)..self.column(to) + 1
     }

@@ -18,6 +18,8 @@ const ALIKE: f64 = 0.15;
 const REST: f64 = 6.0;
 /// A bay that is so much wider or narrower than a way, as a share of it, can be told from one.
 const APART: f64 = 0.1;
+/// A row that goes on farther than others does so for this much, metres.
+const FARTHER: f64 = 1.0;
 /// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
 const WALL: f64 = 0.9;
 const TAKEN: f64 = 0.2;
@@ -79,11 +81,11 @@ pub fn are_alike(one: f64, other: f64) -> bool {
     (one - other).abs() <= ALIKE * other
 }
 
-/// The strips without those that lead through some rows of a place, not past the ends of several that one goes on farther
-/// than, and have no width of what leads through all: bays; nor
+/// The strips without those that lead through some rows of a place and have no width of what leads through all: bays; nor
 /// those at a wall that the rows beside go on to. Where nothing leads through all but past their ends, what has no bays'
 /// width is none, nor what leads through rows of two racks that are open more often than by chance; where something does, what
-/// lies as empty bays do is one. Nor those beside which, with no rack between, one leads through more rows.
+/// lies as empty bays do is one. What leads past rows' ends up to one that goes on farther is none, but where something leads
+/// through all and it is as wide as bays. Nor those beside which, with no rack between, one leads through more rows.
 pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let placed = placed(views, strips.iter().map(Strip::place));
@@ -106,10 +108,9 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
             let (known, is_told_within) = &told[parts[place.first_of(own).unwrap_or(own.rows[0])]];
             let width = strips[n].width();
             let may_be_bay = || view.pitch.is_some_and(|pitch| is_as_bays(width, pitch));
-            // Rows may end before one that goes on farther: what leads past their ends is as wide as the hall leaves.
-            let may_lead_past = own.rows.len() > 1 && !own.is_within && own.next.len() == 1;
-            let is_past_ends = may_lead_past && !(*is_told_within && may_be_bay());
-            let is_some = !own.next.is_empty() && !known.is_empty() && !is_past_ends;
+            let is_as_the_hall_leaves =
+                || leads_past_ends(&place, &strips[n], own) && !(*is_told_within && may_be_bay());
+            let is_some = !own.next.is_empty() && !known.is_empty() && !is_as_the_hall_leaves();
             // Where the rows beside it go on to the wall, one that does not is empty there.
             let is_bay = || own.rows.len() == 1 && !own.is_led_on && is_at_wall(other, &strips[n]);
             // Ways past the rows' ends are as wide as the hall leaves, and tell nothing of what leads through the rows.
@@ -136,6 +137,13 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     }
     let mut flags = stays.into_iter();
     strips.into_iter().filter(|_| flags.next().unwrap_or(true)).collect()
+}
+
+/// True when a strip leads past the ends of several rows, up to one that goes on farther beside them: it is as wide as the
+/// hall leaves there. Between two that go on it would as well be empty bays of the rows between these.
+fn leads_past_ends(place: &Place, strip: &Strip, own: &Passing) -> bool {
+    let &[next] = &own.next[..] else { return false };
+    own.rows.len() > 1 && !own.is_within && place.goes_past(next, strip, FARTHER)
 }
 
 /// True when a wall runs all along one side of a strip.
