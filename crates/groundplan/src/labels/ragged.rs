@@ -6,7 +6,7 @@ use super::beside::Beside;
 use super::corridors::{self, Strip};
 use super::onward;
 use super::recall::Key;
-use super::stretches::{Candidate, Found, Held, Place, beyond, depth, may_be_bay, ragged};
+use super::stretches::{Borders, Candidate, Found, Held, beyond, depth, may_be_bay, ragged};
 use super::sums::What;
 use super::sweep::Sweep;
 use super::turned::Turned;
@@ -65,8 +65,8 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
         let mut next = usize::MAX;
         for n in 0..((extent - width) / step).max(0.0) as usize {
             let low = view.start[1] + n as f64 * step;
-            let place = Place::new(view, [low, low + width]);
-            let may_be = fewest.map(|fewest| place.sides().iter().all(|rows| seen.are_as_many(rows, fewest)));
+            let borders = Borders::new(view, [low, low + width]);
+            let may_be = fewest.map(|fewest| borders.sides().iter().all(|rows| seen.are_as_many(rows, fewest)));
             let own: &[Held] = match [width >= NARROWEST && may_be[0], may_be[1]] {
                 [true, true] => &[Held::Deep, Held::Thin],
                 [true, false] => &[Held::Deep],
@@ -77,7 +77,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
                 Some(group) if n == next && group.len() < GROUP && own == by[group.start] => group.end += 1,
                 _ => groups.push(tried.len()..tried.len() + 1),
             }
-            tried.push(place);
+            tried.push(borders);
             by.push(own);
             next = n + 1;
             widest = widest.max(width);

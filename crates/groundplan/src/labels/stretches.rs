@@ -61,7 +61,7 @@ impl Held {
         shortest.max(long * width)
     }
 
-    /// Where no more is seen at a side, nor along lines there if it is thin, no way of a width has such sides; in cells.
+    /// How many cells a side of a way of a width has at least in which something stands, and how many columns along lines.
     pub fn fewest(self, view: &Turned, width: f64) -> [f64; 2] {
         // A column less, for what floats round.
         let shortest = self.shortest(width) / view.cell - 1.0;
@@ -77,32 +77,32 @@ impl Held {
 /// A way, what holds its sides, and whether walls at its ends have cut it.
 pub type Found = (Strip, Held, bool);
 
-/// A strip.
+/// Where a strip lies across, and the rows of cells there.
 #[derive(Clone, Copy)]
-pub struct Place {
+pub struct Borders {
     pub across: [f64; 2],
-    /// The rows of cells from where on its sides may stand, of its borders, and up to where its sides may.
-    borders: [usize; 4],
+    /// From which row on its lower side may stand, those of its own borders, and up to which its upper side may.
+    rows: [usize; 4],
 }
 
-impl Place {
+impl Borders {
     pub fn new(view: &Turned, across: [f64; 2]) -> Self {
         let [[below, low], [high, above]] = beyond(across);
-        let mut borders = [below, low, high, above].map(|v| view.border_across(v));
-        for n in 1..borders.len() {
-            borders[n] = borders[n].max(borders[n - 1]);
+        let mut rows = [below, low, high, above].map(|v| view.border_across(v));
+        for n in 1..rows.len() {
+            rows[n] = rows[n].max(rows[n - 1]);
         }
-        Self { across, borders }
+        Self { across, rows }
     }
 
     /// The rows of cells in it.
     fn inside(&self) -> Range<usize> {
-        self.borders[1]..self.borders[2]
+        self.rows[1]..self.rows[2]
     }
 
     /// Those in which its sides may stand.
     pub fn sides(&self) -> [Range<usize>; 2] {
-        let [below, low, high, above] = self.borders;
+        let [below, low, high, above] = self.rows;
         [below..low, high..above]
     }
 }
@@ -121,9 +121,11 @@ struct Asked<'a> {
     view: &'a Turned,
     /// How wide each is, metres.
     width: f64,
-    /// Where the sides may stand, the rows of cells there, and the least cells that a column has there.
+    /// From where to where across each side may stand.
     beyond: [[f64; 2]; 2],
+    /// The rows of cells there.
     sides: [Range<usize>; 2],
+    /// The least of them that any of the strips has there.
     deep: [u32; 2],
     blocked: Shares<'a>,
     /// Of blocked samples, the least for which nothing gets through.
@@ -153,18 +155,18 @@ struct Columns {
 }
 
 impl<'a> Asked<'a> {
-    fn new(view: &'a Turned, place: &Place) -> Self {
-        let across = place.across;
-        let blocked = view.shares_of(What::Blocked, place.inside());
+    fn new(view: &'a Turned, borders: &Borders) -> Self {
+        let across = borders.across;
+        let blocked = view.shares_of(What::Blocked, borders.inside());
         let closed = blocked.least(|share| share > IMPASSABLE);
-        let sides = place.sides();
+        let sides = borders.sides();
         let deep = sides.each_ref().map(|rows| rows.len() as u32);
         Self { view, width: across[1] - across[0], beyond: beyond(across), sides, deep, blocked, closed }
     }
 
     /// Several of one width, the lowest first: what they have in common, between sides that may stand wherever one's may.
     /// Of its columns at least as much speaks for a way as of any one's.
-    fn common(view: &'a Turned, all: &[Place]) -> Option<Self> {
+    fn common(view: &'a Turned, all: &[Borders]) -> Option<Self> {
         let (first, last) = (all.first()?, all.last()?);
         let most = all.iter().map(|own| own.inside().len()).max()? as u32;
         let (from, to) = (last.inside().start, first.inside().end);
@@ -174,7 +176,7 @@ impl<'a> Asked<'a> {
         let deep = [least(0)?, least(1)?];
         let both = [first, last].map(|own| beyond(own.across));
         let beyond = [0, 1].map(|side| [both[0][side][0], both[1][side][1]]);
-        let both = [first, last].map(Place::sides);
+        let both = [first, last].map(Borders::sides);
         let sides = [0, 1].map(|side| both[0][side].start..both[1][side].end);
         let width = all.iter().map(|own| own.across[1] - own.across[0]).fold(f64::INFINITY, f64::min);
         Some(Self { view, width, beyond, sides, deep, blocked, closed })
@@ -260,11 +262,11 @@ impl<'a> Asked<'a> {
 impl<'a> Candidate<'a> {
     /// What is no wider than `bay`, metres, may be a row of them.
     pub fn new(view: &'a Turned, across: [f64; 2], bay: f64) -> Self {
-        Self { view, across, bay: may_be_bay(across, bay), asked: Asked::new(view, &Place::new(view, across)) }
+        Self { view, across, bay: may_be_bay(across, bay), asked: Asked::new(view, &Borders::new(view, across)) }
     }
 
     /// False when none of several strips of one width, the lowest first, is a way.
-    pub fn may_be(view: &'a Turned, all: &[Place], by: &[Held]) -> bool {
+    pub fn may_be(view: &'a Turned, all: &[Borders], by: &[Held]) -> bool {
         let Some(common) = Asked::common(view, all) else { return false };
         let least = by.iter().map(|&by| common.least(by)).min().unwrap_or(1);
         let stretches = common.stretches(0..view.size[0], least, &[]);
@@ -447,8 +449,9 @@ mod tests {
             let mut ways = 0;
             for (width, n) in [1.2, 1.6, 2.0].into_iter().flat_map(|width| (0..80).map(move |n| (width, n))) {
                 let low = 2.0 + 0.05 * f64::from(n);
-                let pair = [low, low + 0.1].map(|low| Place::new(&view, [low, low + width]));
-                let is_way = |place: &Place| !Candidate::new(&view, place.across, 0.0).ways(&[Held::Deep]).is_empty();
+                let pair = [low, low + 0.1].map(|low| Borders::new(&view, [low, low + width]));
+                let is_way =
+                    |borders: &Borders| !Candidate::new(&view, borders.across, 0.0).ways(&[Held::Deep]).is_empty();
                 if pair.iter().any(is_way) {
                     ways += 1;
                     assert!(Candidate::may_be(&view, &pair, &[Held::Deep]), "{width} m wide from {low} m, {back} back");
