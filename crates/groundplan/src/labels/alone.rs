@@ -38,9 +38,9 @@ impl Alone {
         width > LONGEST && own.rows.iter().all(|&row| self.alike(row, width) <= 1)
     }
 
-    /// True when it lies as empty bays do, and not as ways that are alike: one as wide leads through few of the rows of its place
-    /// alone, or through no more than half of them where something else leads through all. What is longer than beams, or much
-    /// wider than both aisles beside it, is no bay.
+    /// True when it lies as empty bays do, and not as ways that are alike: one as wide leads through few of the rows of its
+    /// place alone, or through no more than half of them where something else leads through all. What is longer than beams, or
+    /// much wider than both aisles beside it, is no bay.
     pub fn is_as_bays_lie(&self, place: &Place, strips: &[Strip], own: &Passing, width: f64) -> bool {
         let (&[row], true) = (&own.rows[..], own.is_within) else { return false };
         let is_narrower = |&aisle: &usize| width < WIDER * strips[place.aisles[aisle]].width();

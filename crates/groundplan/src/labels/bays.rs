@@ -56,16 +56,8 @@ pub fn find(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Option<P
         let places: Vec<Vec<f64>> = own.iter().map(|&n| along(&rows[n], &specks)).collect();
         drop(specks);
         let Some(common) = common(&places, evidence) else { continue };
-        let told = view.pitch.and_then(|bay| whole(bay / common));
-        // What is longer than most beams are recurs by chance as a rule, unless posts tell it.
-        if common > pitch::LONGEST && told.is_none() {
-            continue;
-        }
         let lengths: Vec<usize> = own.iter().filter_map(|&n| nearly_whole(rows[n].length() / common)).collect();
-        // A bay shorter than any that is looked for among posts is told as some of them: then rows are of any number.
-        let fit = |times: &usize| 2 * lengths.iter().filter(|length| *length % times == 0).count() >= lengths.len();
-        let most = (pitch::LONGEST / common + WHOLE) as usize;
-        let times = by_lengths(&lengths, most).or(told.filter(fit)).unwrap_or(1);
+        let Some(times) = in_a_bay(common, &lengths, view.pitch) else { continue };
         let periods = map_each(own.len(), evidence.threads, |m| {
             let (places, along) = (&places[m], rows[own[m]].along);
             let key = || Key::default().numbers(places).number(common).with(times as u64).numbers(&along);
@@ -126,6 +118,20 @@ fn common(rows: &[Vec<f64>], evidence: &Evidence) -> Option<f64> {
         .map(|(_, pitch)| pitch)
 }
 
+/// How many of what recurs most stand in a bay, by the lengths of the rows in these and by the posts' pitch, if any; none where
+/// it recurs by chance.
+fn in_a_bay(common: f64, lengths: &[usize], posts: Option<f64>) -> Option<usize> {
+    let told = posts.and_then(|bay| whole(bay / common));
+    // What is longer than most beams are recurs by chance as a rule, unless posts tell it.
+    if common > pitch::LONGEST && told.is_none() {
+        return None;
+    }
+    // A bay shorter than any that is looked for among posts is told as some of them: then rows are of any number.
+    let fit = |times: &usize| 2 * lengths.iter().filter(|length| *length % times == 0).count() >= lengths.len();
+    let most = (pitch::LONGEST / common + WHOLE) as usize;
+    by_lengths(lengths, most).or(told.filter(fit)).or(Some(1))
+}
+
 /// The whole number nearest to a number, if that is off by no more than its part.
 fn whole(number: f64) -> Option<usize> {
     let whole = number.round();
@@ -154,7 +160,8 @@ fn by_lengths(lengths: &[usize], most: usize) -> Option<usize> {
 /// A row's own pitch near the common one. Posts are narrow: their harmonics tell it more finely than they do
 /// themselves.
 ///
-/// What recurs, so many times in a bay, says how clearly it does. Posts stand at the first place of each bay: a row ends at these.
+/// What recurs, so many times in a bay, says how clearly it does. Posts stand at the first place of each bay: a row ends at
+/// these.
 fn of_row(places: &[f64], common: f64, times: usize, along: [f64; 2]) -> Option<Period> {
     // Two bays at least, and posts enough for them.
     let (common, length) = (times as f64 * common, along[1] - along[0]);

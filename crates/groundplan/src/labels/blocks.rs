@@ -42,7 +42,8 @@ const ENDS: [f64; 2] = [0.3, 0.85];
 /// or than the other where it joins on to something, metres.
 const SHELL: f64 = 0.7;
 const WALL: [f64; 2] = [0.5, 0.8];
-/// Blocks are of a kind when their depths differ by no more than so much, metres, or than that share; and what is taken of them.
+/// Blocks are of a kind when their depths differ by no more than so much, metres, or than that share; and what is taken of
+/// them.
 const ALIKE: (f64, f64) = (0.15, 0.1);
 const TAKEN_ALIKE: f64 = 0.4;
 /// So many of a kind are racks, of which two have no more than so much floor between them, metres; and two that are so many

@@ -304,8 +304,8 @@ fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
     through.into_iter().chain(beyond).map(|along| Strip { along, ..strip.clone() }).collect()
 }
 
-/// True when a strip past the ends of rows is long enough for a way by itself without what leads through those that reach into it:
-/// before the others nothing of them lies in it that could be bays.
+/// True when a strip past the ends of rows is long enough for a way by itself without what leads through those that reach into
+/// it: before the others nothing of them lies in it that could be bays.
 fn is_long_before(strip: &Strip, crossed: &[Crossed]) -> bool {
     let (before, reaching): (Vec<_>, Vec<_>) = crossed.iter().partition(|row| row.passes == Passes::Before);
     let through: f64 = reaching.iter().map(|row| row.along[1] - row.along[0]).sum();

@@ -54,8 +54,8 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f
     is_more_than_chance(open, half_open as f64, places)
 }
 
-/// True when rows side by side are each open at as many places of a width, as where a way leads through each, and so little else
-/// of their halves is that as many would hardly be by chance: no shelves are empty there.
+/// True when rows side by side are each open at as many places of a width, as where a way leads through each, and so little
+/// else of their halves is that as many would hardly be by chance: no shelves are empty there.
 pub fn are_full_elsewhere<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f64) -> bool {
     let (mut ways, mut free, mut all) = (Vec::new(), 0, 0);
     let [least, most] = [AS_WIDE * width / view.cell, width / AS_WIDE / view.cell + ENDS as f64];

@@ -1,4 +1,5 @@
-//! Slots in racks of several pallets' depth: places that are empty from one face on, which are no ways, be they as long as some.
+//! Slots in racks of several pallets' depth: places that are empty from one face on, which are no ways, be they as long as
+//! some.
 
 use super::beside::placed;
 use super::connected;

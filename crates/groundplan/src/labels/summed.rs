@@ -245,7 +245,8 @@ impl SummedRows<'_> {
         all
     }
 
-    /// Which of up to a word of columns of the part seen have a sum as large as that; where mostly none has, that is asked first.
+    /// Which of up to a word of columns of the part seen have a sum as large as that; where mostly none has, that is asked
+    /// first.
     #[inline]
     fn word<const IS_SELDOM: bool>(&self, seen: Range<usize>, least: u32) -> u64 {
         let column = seen.start - self.columns.start;

@@ -170,8 +170,8 @@ impl<'a> Through<'a> {
         gates.collect()
     }
 
-    /// The ways through rows between the ends of racks that are as wide as bays, where as many lead through each of the rows one
-    /// beside another there: bays are empty anywhere.
+    /// The ways through rows between the ends of racks that are as wide as bays, where as many lead through each of the rows
+    /// one beside another there: bays are empty anywhere.
     pub fn in_each_row(&self) -> Vec<Strip> {
         let width = |[from, to]: [f64; 2]| to - from;
         let alike = |m: usize, way: [f64; 2]| {
