@@ -1,9 +1,9 @@
 """Typed junctions and corridors of warehouses that nothing was chosen on: bench/unseen.py [SETS].
 
-The suite ``warehouses`` with other seeds, each site turned by up to 20 degrees more, and sites whose every measure is
-drawn at random: aisles of 2.4 to 4 m, bays of 2 to 3.6 m, up to half of them empty, and one of eight hard kinds each. A
-site that has no room for its rows is left out. SETS (default 1) makes as many of both, and of each the first is what
-docs/approaches.md tells of; no bar, so no exit code.
+The suite ``warehouses`` with other seeds, each site turned by up to 20 degrees more; sites whose every measure is drawn
+at random: aisles of 2.4 to 4 m, bays of 2 to 3.6 m, up to half of them empty, and one of eight hard kinds each; and
+small halls of which 30 to 65 percent of the bays are empty. A site that has no room for its rows is left out. SETS
+(default 1) makes as many of each, of which the first is what docs/approaches.md tells of; no bar, so no exit code.
 """
 
 from __future__ import annotations
@@ -71,6 +71,22 @@ def _drawn(seed: int, kind: int) -> Options:
     return options | halls | {"skew": draw.choice([0, 8, -8])}
 
 
+def half_empty(number: int) -> list[Options]:
+    """Small halls of one or two, many bays of which are empty."""
+    return [_half_empty(12000 + 500 * number + n, n) for n in range(80)]
+
+
+def _half_empty(seed: int, kind: int) -> Options:
+    draw = random.Random(seed)
+    options: Options = {"seed": seed, "yaw": round(draw.uniform(-90, 90), 1)}
+    options |= {"width": draw.choice([26, 32, 40]), "depth": draw.choice([16, 20, 26])}
+    options |= {"aisle": round(draw.uniform(2.2, 3.6), 1), "cross_aisle": round(draw.uniform(3.0, 4.6), 1)}
+    options |= {"bay": round(draw.uniform(1.9, 3.8), 2), "rack_depth": round(draw.uniform(0.8, 1.3), 2)}
+    options |= {"cross_aisles": draw.choice([1, 2]), "sparse": draw.choice([0.3, 0.45, 0.6, 0.65])}
+    options |= {"scan_every": 0.8, "beams": 400}
+    return options | ({"halls": 2, "gap": draw.choice([0.5, 0.6, 3.0])} if kind % 4 == 1 else {})
+
+
 def scores(options: Options) -> list[float] | None:
     """The figures of one site; none where its rows have no room."""
     try:
@@ -87,7 +103,11 @@ def main() -> None:
     print(f"{'sites':15}{'count':>6}{'F1':>8}{'typed':>8}{'worst':>8}{'recall':>8}{'precision':>11}")
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
         for number in range(sets):
-            for name, sites in (("other seeds", reseeded(number)), ("random", drawn(number))):
+            for name, sites in (
+                ("other seeds", reseeded(number)),
+                ("random", drawn(number)),
+                ("half empty", half_empty(number)),
+            ):
                 rows = [row for row in pool.map(scores, sites) if row is not None]
                 f1, typed, recall, precision = (statistics.mean(column) for column in zip(*rows, strict=True))
                 worst = min(row[1] for row in rows)

@@ -202,3 +202,25 @@ def test_a_mesh_behind_empty_bays_lets_no_way_through_at_the_wall(seed: int) -> 
         row[:, -4:] = 254
         row[-2:] = 0
     assert ways_across(picture) == pytest.approx(HEADS[:1], abs=0.3)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("width", [40, 56])
+def test_a_gate_as_wide_as_a_bay_in_the_wall_between_two_halls_is_a_way(width: int, seed: int) -> None:
+    # A wall of 0.4 m, too thick for a line and too thin for racks, between halls of rows of which half is empty.
+    draws = np.random.default_rng(seed)
+    count = 14
+    halls = [hall(number, 20, count * BAY) for number in (2, 3)]
+    for row in [row for _, rows in halls for row in rows]:
+        fill(row, [n * BAY for n in range(count)], (draws.random(count) > 0.5).tolist())
+    (below, _), (above, _) = halls
+    wall = len(below) - 20
+    picture = np.vstack([below[:-16], above[16:]])
+    picture[wall : wall + 8, 18:-18] = 0
+    for gate in (280, 630):
+        picture[wall : wall + 8, gate : gate + width] = 254
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    place = (len(picture) - wall - 4) * RESOLUTION
+    axes = [sorted(way["axis"], key=lambda end: end[1]) for way in survey.of_kind("corridor")]
+    gates = sorted(low[0] for low, high in axes if low[1] < place < high[1])
+    assert gates == pytest.approx([(gate + width / 2) * RESOLUTION for gate in (280, 630)], abs=0.2)

@@ -170,3 +170,11 @@ def test_a_way_across_rows_is_none_along_the_next_wing(turn: float, free: float,
     assert abs(np.subtract(*across[0])[0]) < 0.2
     hall = [junction["type"] for junction in survey.of_kind("junction") if junction["at"][0] < 46]
     assert hall.count("X") == 5
+
+
+@pytest.mark.parametrize("wall", [0.8, 1.0])
+def test_the_way_past_a_rows_head_is_one_though_another_halls_aisle_lies_beside_the_row_elsewhere(wall: float) -> None:
+    floors: list[Box] = [(0, 0, 44, 7.4), (0, 7.4 + wall, 20, 10.6 + wall), (9.5, 7, 12.5, 8 + wall)]
+    survey = groundplan.survey(site(floors, rows([3.2], [(4.5, 39.5)], depth=1)), resolution=RESOLUTION)
+    ends = [junction for junction in survey.of_kind("junction") if junction["at"][0] > 40]
+    assert [junction["type"] for junction in ends] == ["L", "L"]

@@ -13,7 +13,7 @@ use super::sections::{Columns, Free, WIDTH};
 use super::sided;
 use super::turned::Turned;
 use crate::bands::flat_map_each;
-use crate::ends::{around, overlap, shared, sorted};
+use crate::ends::{around, holds, overlap, shared, sorted};
 use std::collections::BTreeMap;
 use std::iter;
 
@@ -33,6 +33,8 @@ const LONGER: f64 = 4.0;
 const LEFT: f64 = 0.5;
 /// A way through a row is no narrower than gates are, or than this share of the aisles beside it.
 const NARROWER: f64 = family::LED_TO;
+/// What posts leave of a strip is so much narrower, metres.
+const STANDING: f64 = 0.3;
 /// What goes on so far beyond the rows, metres, is a way there.
 const BEYOND: f64 = 2.0;
 
@@ -214,6 +216,8 @@ struct Crossed {
     free: Option<Free>,
     /// From where to where nothing stands in the row within the strip, across.
     between: Vec<[f64; 2]>,
+    /// What is free of the row about the strip's middle is no wider than a bay, and narrower than the strip.
+    is_bay: bool,
 }
 
 impl Crossed {
@@ -258,6 +262,8 @@ fn cross(
     let free = columns.is_free(sides).then(|| columns.free_elsewhere(sides));
     let across = |u: f64| other.place(view.to_map([u, middle]))[1];
     let along_of = |places: [f64; 2]| sorted(places.map(along));
+    let is_narrower = |ends: &[f64; 2]| ends[1] - ends[0] <= sides[1] - sides[0] - STANDING;
+    let is_bay = open.iter().any(|ends| holds(*ends, u) && columns.is_as_a_bay(*ends) && is_narrower(ends));
     Some(Crossed {
         along: along_of(between.map(Strip::middle)),
         outer: along_of([between[0].across[0], between[1].across[1]]),
@@ -266,6 +272,7 @@ fn cross(
         passes,
         free,
         between: open.iter().map(|&ends| shared(sorted(ends.map(across)), strip.across)).filter(is_wide).collect(),
+        is_bay,
     })
 }
 
@@ -276,6 +283,11 @@ fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
     let least = if are_ends { AT_ENDS } else { EXPECTED.1 };
     if strip.bays && expected >= least && !(are_ends && is_long_before(&strip, &crossed)) {
         return Vec::new();
+    }
+    if expected >= EXPECTED.1 && lies_over_bays(&crossed) {
+        for row in crossed.iter_mut().filter(|row| !row.at_end()) {
+            *row = row.clone().closed();
+        }
     }
     for row in crossed.iter_mut().filter(|row| expected < EXPECTED.0 && row.free.is_some()) {
         (row.way, row.open) = (true, true);
@@ -302,6 +314,13 @@ fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
     };
     let beyond = starts.zip(ends).map(|(from, to)| [from, to]).filter(is_beyond);
     through.into_iter().chain(beyond).map(|along| Strip { along, ..strip.clone() }).collect()
+}
+
+/// True when posts stand within a strip's sides and leave no more of it than a bay in any row that is open there: goods that
+/// stand back from their posts are its sides.
+fn lies_over_bays(crossed: &[Crossed]) -> bool {
+    let mut open = crossed.iter().filter(|row| !row.at_end() && row.open).peekable();
+    open.peek().is_some() && open.all(|row| row.is_bay)
 }
 
 /// True when a strip past the ends of rows is long enough for a way by itself without what leads through those that reach into
@@ -337,7 +356,16 @@ mod tests {
     /// A row between two aisles of 3 m, from one's middle to the other's.
     fn row(along: [f64; 2], is_open: bool) -> Crossed {
         let outer = [along[0] - 1.5, along[1] + 1.5];
-        Crossed { along, outer, way: is_open, open: is_open, passes: Passes::Within, free: None, between: Vec::new() }
+        Crossed {
+            along,
+            outer,
+            way: is_open,
+            open: is_open,
+            passes: Passes::Within,
+            free: None,
+            between: Vec::new(),
+            is_bay: false,
+        }
     }
 
     /// From 0 to 40 m.
@@ -379,6 +407,14 @@ mod tests {
         };
         assert!(is_way(40.0, Passes::Before));
         assert!(!is_way(20.0, Passes::Before) && !is_way(40.0, Passes::End));
+    }
+
+    #[test]
+    fn what_posts_leave_no_more_of_than_a_bay_is_none_though_its_sides_are_wider_apart() {
+        let bay = |along| Crossed { is_bay: true, ..row(along, true) };
+        assert_eq!(pieces(&[bay([1.5, 20.0]), bay([20.0, 38.5])]), [] as [[f64; 2]; 0]);
+        // What is wider than bays in one row is a way there, and through others.
+        assert_eq!(pieces(&[bay([1.5, 20.0]), row([20.0, 38.5], true)]), [[0.0, 40.0]]);
     }
 
     #[test]

@@ -41,20 +41,24 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let placed = placed(views, strips.iter().map(Strip::place));
     let widest = corridors::widest(strips);
     let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, &placed, widest, row)).collect();
-    let seen = seen(evidence, look, views, strips, rows, &reaching);
-    for row in &seen {
+    let through = Through::new(views, seen(evidence, look, views, strips, rows, &reaching));
+    // As wide as bays, but at a wall or through one: no bay is in a wall, nor is what leads through it as wide as other ways.
+    let mut as_a_bay = Vec::new();
+    for (row, is_wall) in through.rows.iter().zip(&through.walls) {
         for &way in &row.ways {
-            let found = if row.columns.is_as_bays(way) { &mut doubtful } else { &mut gates };
+            let found = match (row.columns.is_as_bays(way), is_wall) {
+                (true, true) => &mut as_a_bay,
+                (true, false) => &mut doubtful,
+                (false, _) => &mut gates,
+            };
             found.extend(row.gate(way));
         }
     }
-    let mut as_bays: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, &seen)).collect();
-    let through = Through::new(views, seen);
+    let mut as_bays: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, &through.rows)).collect();
     // What leads through each row is counted in whole rows: a way that is known cuts the one that it leads through.
     let whole = uncut(views, rows);
-    let whole = whole.as_ref().map(|rows| Through::new(views, self::seen(evidence, look, views, strips, rows, rows)));
+    let whole = whole.as_ref().map(|rows| Through::new(views, seen(evidence, look, views, strips, rows, rows)));
     let in_each_row = whole.as_ref().unwrap_or(&through).in_each_row();
-    let mut as_a_bay = Vec::new();
     for (gate, is_as_a_bay) in through.at_walls(strips, &placed) {
         let found = if is_as_a_bay { &mut as_a_bay } else { &mut gates };
         found.push(gate);

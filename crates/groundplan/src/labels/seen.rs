@@ -74,12 +74,13 @@ impl Seen<'_> {
         gates::walled(view, strips, self.row, self.between, view.columns(beyond)).any()
     }
 
-    /// The corridors that run along it no further off than a row is deep.
-    pub fn corridors_beside(&self, strips: &[Strip], placed: &[Beside]) -> Vec<usize> {
+    /// The corridors that run along it no further off than a row is deep, and lead as near to a stretch as that is long.
+    pub fn corridors_beside(&self, strips: &[Strip], placed: &[Beside], stretch: [f64; 2]) -> Vec<usize> {
         let [below, above] = self.between;
         let beside = wider([strips[below].across[0], strips[above].across[1]], DEPTH.1);
-        let mut found = placed[self.row.direction].touching(self.row.along, beside);
-        found.retain(|&n| overlap(strips[n].along, self.row.along) > 0.0 && overlap(strips[n].across, beside) > 0.0);
+        let near = wider(stretch, stretch[1] - stretch[0]);
+        let mut found = placed[self.row.direction].touching(near, beside);
+        found.retain(|&n| overlap(strips[n].along, near) > 0.0 && overlap(strips[n].across, beside) > 0.0);
         found
     }
 

@@ -52,13 +52,13 @@ const SOME: f64 = 0.0005;
 
 /// The rows of a place, and where each is open.
 pub struct Through<'a> {
-    rows: Vec<Seen<'a>>,
+    pub rows: Vec<Seen<'a>>,
     open: Openings<'a>,
     /// For each row those above it and below it, with which it shares a corridor.
     above: Vec<Vec<usize>>,
     below: Vec<Vec<usize>>,
     /// Which of the rows are walls between halls.
-    walls: Vec<bool>,
+    pub walls: Vec<bool>,
     /// For each row, which of its ends are at a wall, when that is known.
     walled: Vec<[bool; 2]>,
 }
@@ -149,7 +149,7 @@ impl<'a> Through<'a> {
                 let is_bounded = |m: &usize| ways[*m].as_ref().is_some_and(|(_, is_bounded, _)| *is_bounded);
                 if beside.iter().all(is_in_line)
                     && beside.iter().any(is_bounded)
-                    && self.are_all(&beside, strips, placed)
+                    && self.are_all(&beside, way, strips, placed)
                 {
                     found.push((way.clone(), *is_as_a_bay));
                 }
@@ -200,12 +200,15 @@ impl<'a> Through<'a> {
         found
     }
 
-    /// True when no corridor runs beside some rows but those between which they are known, no further off than a row is deep,
-    /// and those behind a wall.
-    fn are_all(&self, rows: &BTreeSet<usize>, strips: &[Strip], placed: &[Beside]) -> bool {
+    /// True when no corridor runs beside some rows near to a way but those between which they are known, no further off than a
+    /// row is deep, and those behind a wall.
+    fn are_all(&self, rows: &BTreeSet<usize>, way: &Strip, strips: &[Strip], placed: &[Beside]) -> bool {
         let walls = rows.iter().flat_map(|&n| self.above[n].iter().chain(&self.below[n])).filter(|&&m| self.walls[m]);
         let known: BTreeSet<usize> = rows.iter().chain(walls).flat_map(|&n| self.rows[n].between).collect();
-        rows.iter().all(|&n| self.rows[n].corridors_beside(strips, placed).iter().all(|strip| known.contains(strip)))
+        rows.iter().map(|&n| &self.rows[n]).all(|row| {
+            let beside = row.corridors_beside(strips, placed, row.stretch(way.across));
+            beside.iter().all(|strip| known.contains(strip))
+        })
     }
 
     /// What of a stretch that is open in some rows goes on through the next ones.
