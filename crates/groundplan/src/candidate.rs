@@ -18,6 +18,9 @@ pub const SQUARE: (f64, f64) = (0.3, 0.015);
 /// wall lines up along one angle, if at all.
 pub const WING: (f64, f64) = (1.0, 0.03);
 
+/// Drift bends halls, so that the two directions of one are square to so many degrees, and not to those above.
+const BENT_DEG: f64 = 1.0;
+
 /// A direction that may be one.
 #[derive(Clone, Copy)]
 pub struct Candidate {
@@ -71,9 +74,9 @@ pub fn wings(weak: &[Candidate], strong: &[Candidate], strongest: f64, parameter
     own.iter().filter(|f| own.iter().any(|other| is_square(other.angle, f, WING.0))).copied().collect()
 }
 
-/// Those that have no other square to them.
+/// Those that have no other square to them, be the map bent a little.
 pub fn alone(strong: &[Candidate]) -> impl Iterator<Item = &Candidate> {
-    strong.iter().filter(|f| !strong.iter().any(|other| is_square(other.angle, f, SQUARE.0)))
+    strong.iter().filter(|f| !strong.iter().any(|other| is_square(other.angle, f, BENT_DEG)))
 }
 
 /// True when an angle is within so much of a direction, or of what is square to it.
@@ -85,4 +88,22 @@ fn is_of(direction: &Candidate, angle: f64, within: f64) -> bool {
 /// True when an angle is square to a direction, to so many degrees.
 pub fn is_square(angle: f64, to: &Candidate, within_deg: f64) -> bool {
     FRAC_PI_2 - angle_between(angle, to.angle) <= within_deg.to_radians()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn candidate(degrees: f64, metres: f64) -> Candidate {
+        Candidate { angle: degrees.to_radians(), metres, quiet: [true; CONTROLS_DEG.len()] }
+    }
+
+    #[test]
+    fn the_ends_of_a_wing_count_beside_a_hall_that_drift_has_bent_and_not_beside_a_skewed_one() {
+        let ends = candidate(-67.5, 60.0);
+        for (second, count) in [(73.0, 1), (73.4, 1), (80.0, 0)] {
+            let strong = [candidate(-17.1, 540.0), candidate(second, 510.0), candidate(22.4, 175.0)];
+            assert_eq!(seconds(&[ends], &strong).len(), count, "{second}");
+        }
+    }
 }

@@ -55,10 +55,9 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f
 }
 
 /// True when rows side by side are each open at as many places of a width, as where a way leads through each, and so little
-/// else of their halves is that as many would hardly be by chance: no shelves are empty there. Of two racks the one may be
-/// empty where the other is not; the halves of one are empty together.
+/// else of their halves is that as many would hardly be by chance: no shelves are empty there.
 pub fn are_full_elsewhere<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f64) -> bool {
-    let (mut ways, mut free, mut all, mut of_one) = (Vec::new(), 0, 0, 0);
+    let (mut ways, mut free, mut all) = (Vec::new(), 0, 0);
     let [least, most] = [AS_WIDE * width / view.cell, width / AS_WIDE / view.cell + ENDS as f64];
     for row in rows {
         let mut halves = open_halves(view, row);
@@ -75,9 +74,7 @@ pub fn are_full_elsewhere<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>
             }
         }
         ways.push(open.len());
-        let elsewhere = is_elsewhere.into_iter().filter(|is| *is).count();
-        all += 2 * elsewhere;
-        of_one += if is_double(row) { 0 } else { elsewhere };
+        all += 2 * is_elsewhere.into_iter().filter(|is| *is).count();
         let lengths = halves.iter().flat_map(|half| runs(half, true)).map(|(from, to)| to - from);
         free += lengths.filter(|length| *length as f64 >= SHELF / view.cell).sum::<usize>();
     }
@@ -87,14 +84,7 @@ pub fn are_full_elsewhere<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>
     // Half a place more is open and one more is there, as so few tell little.
     let [free, all, own] = [free as f64, all as f64, width / view.cell];
     let share = (free + 0.5 * own) / (all + own);
-    let places = [of_one as f64, all / 2.0 - of_one as f64].map(|columns| columns / own);
-    chance(ways.iter().sum(), expected(places, share)) < UNLIKELY_IN_FULL
-}
-
-/// How many of so many places in rows of one rack and in rows of two are open from aisle to aisle by chance, where this share
-/// of all racks is empty.
-fn expected([of_one, of_two]: [f64; 2], share: f64) -> f64 {
-    share * of_one + share * share * of_two
+    chance(ways.iter().sum(), all / 2.0 / own * share * share) < UNLIKELY_IN_FULL
 }
 
 /// In which columns each half of a row is open.
@@ -146,12 +136,6 @@ mod tests {
         {
             assert!((chance(count, expected) - said).abs() < 1e-4, "{count} of {expected}");
         }
-    }
-
-    #[test]
-    fn a_rack_by_itself_is_open_as_often_as_it_is_empty_and_two_where_both_are() {
-        assert!((expected([20.0, 0.0], 0.3) - 6.0).abs() < 1e-9);
-        assert!((expected([0.0, 20.0], 0.3) - 1.8).abs() < 1e-9);
     }
 
     #[test]
