@@ -34,7 +34,7 @@ const LEFT: f64 = 0.5;
 /// A way through a row is no narrower than gates are, or than this share of the aisles beside it.
 const NARROWER: f64 = family::LED_TO;
 /// What posts leave of a strip is so much narrower, metres.
-const STANDING: f64 = 0.3;
+const NARROWED: f64 = 0.3;
 /// What goes on so far beyond the rows, metres, is a way there.
 const BEYOND: f64 = 2.0;
 
@@ -217,7 +217,7 @@ struct Crossed {
     /// From where to where nothing stands in the row within the strip, across.
     between: Vec<[f64; 2]>,
     /// What is free of the row about the strip's middle is no wider than a bay, and narrower than the strip.
-    is_bay: bool,
+    leaves_a_bay: bool,
 }
 
 impl Crossed {
@@ -262,8 +262,8 @@ fn cross(
     let free = columns.is_free(sides).then(|| columns.free_elsewhere(sides));
     let across = |u: f64| other.place(view.to_map([u, middle]))[1];
     let along_of = |places: [f64; 2]| sorted(places.map(along));
-    let is_narrower = |ends: &[f64; 2]| ends[1] - ends[0] <= sides[1] - sides[0] - STANDING;
-    let is_bay = open.iter().any(|ends| holds(*ends, u) && columns.is_as_a_bay(*ends) && is_narrower(ends));
+    let is_narrower = |ends: &[f64; 2]| ends[1] - ends[0] <= sides[1] - sides[0] - NARROWED;
+    let leaves_a_bay = open.iter().any(|ends| holds(*ends, u) && columns.is_as_a_bay(*ends) && is_narrower(ends));
     Some(Crossed {
         along: along_of(between.map(Strip::middle)),
         outer: along_of([between[0].across[0], between[1].across[1]]),
@@ -272,7 +272,7 @@ fn cross(
         passes,
         free,
         between: open.iter().map(|&ends| shared(sorted(ends.map(across)), strip.across)).filter(is_wide).collect(),
-        is_bay,
+        leaves_a_bay,
     })
 }
 
@@ -316,11 +316,11 @@ fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
     through.into_iter().chain(beyond).map(|along| Strip { along, ..strip.clone() }).collect()
 }
 
-/// True when posts stand within a strip's sides and leave no more of it than a bay in any row that is open there: goods that
-/// stand back from their posts are its sides.
+/// True when posts stand within a strip's sides and leave no more of it than a bay in each of several rows that are open there,
+/// as where goods that stand back from their posts have lines. One row alone does not tell a gap between frames from a bay.
 fn lies_over_bays(crossed: &[Crossed]) -> bool {
-    let mut open = crossed.iter().filter(|row| !row.at_end() && row.open).peekable();
-    open.peek().is_some() && open.all(|row| row.is_bay)
+    let open: Vec<_> = crossed.iter().filter(|row| !row.at_end() && row.open).collect();
+    open.len() > 1 && open.iter().all(|row| row.leaves_a_bay)
 }
 
 /// True when a strip past the ends of rows is long enough for a way by itself without what leads through those that reach into
@@ -364,7 +364,7 @@ mod tests {
             passes: Passes::Within,
             free: None,
             between: Vec::new(),
-            is_bay: false,
+            leaves_a_bay: false,
         }
     }
 
@@ -411,10 +411,11 @@ mod tests {
 
     #[test]
     fn what_posts_leave_no_more_of_than_a_bay_is_none_though_its_sides_are_wider_apart() {
-        let bay = |along| Crossed { is_bay: true, ..row(along, true) };
+        let bay = |along| Crossed { leaves_a_bay: true, ..row(along, true) };
         assert_eq!(pieces(&[bay([1.5, 20.0]), bay([20.0, 38.5])]), [] as [[f64; 2]; 0]);
         // What is wider than bays in one row is a way there, and through others.
         assert_eq!(pieces(&[bay([1.5, 20.0]), row([20.0, 38.5], true)]), [[0.0, 40.0]]);
+        assert_eq!(pieces(&[bay([1.5, 38.5])]), [[0.0, 40.0]]);
     }
 
     #[test]

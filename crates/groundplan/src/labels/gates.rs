@@ -42,25 +42,27 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let widest = corridors::widest(strips);
     let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, &placed, widest, row)).collect();
     let through = Through::new(views, seen(evidence, look, views, strips, rows, &reaching));
-    // As wide as bays, but at a wall or through one: no bay is in a wall, nor is what leads through it as wide as other ways.
-    let mut as_a_bay = Vec::new();
-    for (row, is_wall) in through.rows.iter().zip(&through.walls) {
+    // What leads past rows at a wall, or through a row that is a wall itself from one wall to another, though it is as wide as
+    // bays; it tells nothing of how wide other ways are.
+    let mut at_walls = Vec::new();
+    for (n, row) in through.rows().iter().enumerate() {
+        let is_wall = through.is_wall(n) && [0, 1].into_iter().all(|side| row.is_at_wall(strips, side));
         for &way in &row.ways {
             let found = match (row.columns.is_as_bays(way), is_wall) {
-                (true, true) => &mut as_a_bay,
+                (true, true) => &mut at_walls,
                 (true, false) => &mut doubtful,
                 (false, _) => &mut gates,
             };
             found.extend(row.gate(way));
         }
     }
-    let mut as_bays: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, &through.rows)).collect();
+    let mut as_bays: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, through.rows())).collect();
     // What leads through each row is counted in whole rows: a way that is known cuts the one that it leads through.
     let whole = uncut(views, rows);
     let whole = whole.as_ref().map(|rows| Through::new(views, seen(evidence, look, views, strips, rows, rows)));
     let in_each_row = whole.as_ref().unwrap_or(&through).in_each_row();
     for (gate, is_as_a_bay) in through.at_walls(strips, &placed) {
-        let found = if is_as_a_bay { &mut as_a_bay } else { &mut gates };
+        let found = if is_as_a_bay { &mut at_walls } else { &mut gates };
         found.push(gate);
     }
     let between_racks = through.between_racks();
@@ -99,7 +101,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     gates.extend(as_wide.map(|(gate, ..)| gate));
     gates.retain(|gate| !through.iter().any(|way| is_in(gate, way)));
     gates.extend(through);
-    gates.extend(as_a_bay.into_iter().chain(thin::gates(views, strips)));
+    gates.extend(at_walls.into_iter().chain(thin::gates(views, strips)));
     let ways = in_line(gates);
     as_bays.extend(as_wide_as_others(views, strips, &ways, in_each_row));
     as_bays.retain(|gate| !ways.iter().any(|way| is_in(gate, way)));

@@ -38,7 +38,7 @@ pub const LONGEST: f64 = 3.9;
 const BAYS: [f64; 2] = [2.0, 1.5];
 const PARTIAL: f64 = 6.0;
 /// Of what recurs along faces at least this share of the pairs has a row beside it from one to the other, and of those twice
-/// as far apart: where most bays are empty few have, and across the rows hardly any.
+/// as far apart: fewer where most bays are empty, and next to none of what recurs across the rows.
 const ALONG: [f64; 2] = [0.15, 0.025];
 /// Steps to either side of a lag over which it is the strongest.
 const TOP: usize = 4;

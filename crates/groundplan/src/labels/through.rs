@@ -52,13 +52,13 @@ const SOME: f64 = 0.0005;
 
 /// The rows of a place, and where each is open.
 pub struct Through<'a> {
-    pub rows: Vec<Seen<'a>>,
+    rows: Vec<Seen<'a>>,
     open: Openings<'a>,
     /// For each row those above it and below it, with which it shares a corridor.
     above: Vec<Vec<usize>>,
     below: Vec<Vec<usize>>,
     /// Which of the rows are walls between halls.
-    pub walls: Vec<bool>,
+    walls: Vec<bool>,
     /// For each row, which of its ends are at a wall, when that is known.
     walled: Vec<[bool; 2]>,
 }
@@ -75,6 +75,15 @@ impl<'a> Through<'a> {
         let (below, above) = (next(0), next(1));
         let walls = whole::are_between_halls(views, &rows.iter().map(|seen| seen.row).collect::<Vec<_>>());
         Self { open: Openings::new(views.len(), &rows), rows, above, below, walls, walled: Vec::new() }
+    }
+
+    pub fn rows(&self) -> &[Seen<'a>] {
+        &self.rows
+    }
+
+    /// True when a row is a wall between halls.
+    pub fn is_wall(&self, row: usize) -> bool {
+        self.walls[row]
     }
 
     /// The ways, where those of known widths are, each through one row after another; `known_within` tells of each direction
