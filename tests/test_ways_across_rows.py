@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +11,7 @@ import pytest
 
 import groundplan
 from groundplan import simulate
+from groundplan.evaluate import score
 
 Picture = npt.NDArray[np.uint8]
 
@@ -378,3 +380,19 @@ def test_many_half_empty_rows_that_nothing_leads_through_have_no_way(seed: int, 
     options = simulate.WarehouseOptions(sparse=sparse, cross_aisles=0, width=70.0, depth=45.0)
     survey = groundplan.survey(simulate.warehouse(options, seed=seed).map)
     assert len([way for way in survey.of_kind("corridor") if way["name"].startswith("C")]) == 2
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"seed": 45, "yaw": -27.4, "width": 44, "depth": 22, "aisle": 2.5, "cross_aisle": 2.9, "bay": 2.47}
+        | {"rack_depth": 0.9, "sparse": 0.4, "staggered": 10.7},
+        {"seed": 73, "yaw": -26.4, "width": 44, "depth": 18, "aisle": 2.9, "cross_aisle": 3.2, "bay": 2.89}
+        | {"rack_depth": 1.06, "sparse": 0.1, "staggered": 7.0, "halls": 2, "gap": 0.5},
+    ],
+    ids=["one-hall", "two-halls"],
+)
+def test_staggered_ways_a_little_wider_than_bays_are_ways(options: dict[str, Any]) -> None:
+    simulated = simulate.warehouse(**options, scan_every=0.8, beams=400)
+    survey = groundplan.survey(simulated.map)
+    assert score(survey.to_dict(), simulated.truth)["junction_typed_f1"] == 1

@@ -24,8 +24,8 @@ const ENTERS: f64 = 0.35;
 const EXPECTED: (f64, f64) = (0.05, 0.005);
 /// The same of one that is like bays and leads past the ends of all rows that it crosses, where most halls have a way.
 const AT_ENDS: f64 = 0.03;
-/// Past the ends of rows a way is held by these, but for the mouths of aisles, along so much of it.
-const HELD: f64 = 0.9;
+/// Past the ends of rows a way is held by these and by a wall, but for the mouths of aisles and passages, along so much of it.
+const HELD: f64 = 0.65;
 /// Where posts recur along the rows, and not across them too, what crosses them is no more than so many times as long as
 /// the shorter of the two corridors beside a row: short ones between the goods of racks do not make bays of the aisles.
 const LONGER: f64 = 4.0;
@@ -405,7 +405,8 @@ mod tests {
             let two = Crossed { passes, ..row([6.5, 39.0], true) };
             !ways(Strip { bays: true, score, ..strip() }, vec![one, two]).is_empty()
         };
-        assert!(is_way(40.0, Passes::Before));
+        // Through a passage in the wall one does not lie at a side.
+        assert!(is_way(40.0, Passes::Before) && is_way(29.0, Passes::Before));
         assert!(!is_way(20.0, Passes::Before) && !is_way(40.0, Passes::End));
     }
 

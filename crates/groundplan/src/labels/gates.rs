@@ -86,9 +86,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let is_told = |n: usize, gate: &Strip| {
         let widths = &sure[gate.direction];
         let pitch = crossing(views, gate.direction).and_then(|view| view.pitch);
-        !is_any_known(gate.direction)
-            || widths.have(gate.width() + BETWEEN_CELLS, pitch)
-            || (!within[gate.direction] && open[n])
+        !is_any_known(gate.direction) || widths.have(gate.width() + BETWEEN_CELLS, pitch) || open[n]
     };
     gates.extend(doubtful.iter().enumerate().filter(|(n, gate)| is_told(*n, gate)).map(|(_, gate)| gate.clone()));
     // Where no row beside tells a bay from a way, a way is as wide as others of the place; and where ways are staggered from

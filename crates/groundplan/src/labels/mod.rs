@@ -19,6 +19,7 @@ mod crossed;
 mod empties;
 mod faced;
 mod family;
+mod framed;
 mod frames;
 mod gates;
 mod grounds;

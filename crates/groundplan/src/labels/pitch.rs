@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Lags are counted in steps of this many metres, between the shortest and the longest that are looked at.
 const STEP: f64 = 0.05;
-const LAGS: (f64, f64) = (1.6, 6.0);
+pub const LAGS: (f64, f64) = (1.6, 6.0);
 /// Specks this near to a line stand on it, metres.
 const NEAR: f64 = 0.12;
 /// Lines with fewer specks say nothing.
@@ -139,6 +139,11 @@ fn one_bay(lag: usize, clear: impl Fn(usize) -> f64) -> usize {
         (middle - POST..=middle + POST).max_by(|one, two| clear(*one).total_cmp(&clear(*two)))
     };
     BAYS.into_iter().filter_map(clearest).find(|&bay| clear(bay) >= PARTIAL).unwrap_or(lag)
+}
+
+/// A length in whole parts of a step, metres.
+pub fn in_parts(length: f64) -> f64 {
+    (length / STEP * PARTS).round() / PARTS * STEP
 }
 
 /// How many pairs of specks on a line, of those so far apart, are as many steps apart with a row beside them.

@@ -15,8 +15,8 @@ use crate::grid::Frame;
 
 /// A way is so wide, metres.
 pub const WIDTH: (f64, f64) = (1.6, 8.0);
-/// A section up to this many pitches is an empty bay.
-const BAY: f64 = 1.08;
+/// A section up to this many pitches is an empty bay: of its pitch the posts take a little, and none is wider.
+const BAY: f64 = 1.03;
 /// What passes a row's end is at least so many pitches wide, or lies within its last bay.
 const NARROW: f64 = 0.8;
 /// A section this near to a whole number of pitches is one of empty bays, unless its ends are closed.
@@ -251,6 +251,11 @@ impl<'a> Columns<'a> {
         }
     }
 
+    /// True when something closes all of the row's depth at a place along.
+    pub fn is_closed_at(&self, along: f64) -> bool {
+        self.lines.closing(along) == Closing::Whole
+    }
+
     /// How the row is closed where a column begins.
     fn closing(&self, n: usize) -> Closing {
         self.lines.closing(self.place(n))
@@ -299,4 +304,15 @@ impl<'a> Columns<'a> {
 pub fn is_as_bays(width: f64, pitch: f64) -> bool {
     let count = (width / pitch).round();
     width <= BAY * pitch || (count >= 2.0 && (width / pitch - count).abs() < WHOLE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_wider_than_from_post_to_post_is_no_bay() {
+        assert!(is_as_bays(2.8, 3.0) && is_as_bays(3.05, 3.0) && is_as_bays(5.9, 3.0));
+        assert!(!is_as_bays(3.15, 3.0) && !is_as_bays(4.5, 3.0));
+    }
 }

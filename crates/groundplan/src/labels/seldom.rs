@@ -12,6 +12,8 @@ const TWO: f64 = 1.5;
 pub const AS_WIDE: f64 = 0.85;
 /// So many cells on either side of what is open are of its ends.
 const ENDS: usize = 2;
+/// Shorter ones, in widths, have no room for a way between racks.
+const LONG: f64 = 2.0;
 /// Fewer such rows tell nothing.
 const ROWS: usize = 2;
 /// It is not by chance that as many places are open when that is less likely than this.
@@ -30,7 +32,7 @@ pub fn is_double(row: &Row) -> bool {
 /// they would hardly be by chance if each rack were empty where it is, whatever the other is.
 pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f64) -> bool {
     let (mut half_open, mut open, mut places) = (0, 0, 0.0);
-    let rows: Vec<&Row> = rows.filter(|row| is_double(row)).collect();
+    let rows: Vec<&Row> = rows.filter(|row| is_double(row) && row.length() >= LONG * width).collect();
     if rows.len() < ROWS {
         return false;
     }

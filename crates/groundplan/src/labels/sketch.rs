@@ -53,7 +53,8 @@ impl<'a> Glance<'a> {
     pub fn new(scene: &Scene<'a>, look: Look<'a>, uprights: &[Upright]) -> Self {
         let on_legs = legs::find(scene, uprights);
         let count = scene.directions.angles.len();
-        let mut views: Vec<_> = (0..count).map(|direction| Turned::new(scene, direction, &on_legs)).collect();
+        let view = |direction| Turned::new(scene, direction, &on_legs).framed(uprights);
+        let mut views: Vec<_> = (0..count).map(view).collect();
         quarter::see(&mut views, scene, &look);
         Self { look, views, on_legs }
     }
@@ -95,9 +96,10 @@ impl<'a> Sight<'a, Free> {
     pub fn lined(evidence: &Evidence, Ground { look, space }: Ground<'_, 'a>) -> Self {
         let free = space.get().map(|space| with_bars(evidence, space));
         let scene = evidence.scene();
-        let on_legs = legs::find(&scene, &uprights::find(&evidence.grid.frame, &evidence.gradients.pixels));
+        let uprights = uprights::find(&evidence.grid.frame, &evidence.gradients.pixels);
+        let on_legs = legs::find(&scene, &uprights);
         let views = map_each(evidence.directions.angles.len(), evidence.threads, |direction| {
-            let mut view = Turned::new(&scene, direction, &on_legs);
+            let mut view = Turned::new(&scene, direction, &on_legs).framed(&uprights);
             view.line(evidence);
             view
         });

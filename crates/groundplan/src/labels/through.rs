@@ -50,6 +50,10 @@ const OTHER: f64 = 0.005;
 /// another width than those and a bay's.
 const SOME: f64 = 0.0005;
 
+/// So many ends of rows tell what closes them, where so much of them is closed.
+const ENDS: usize = 4;
+const GUARDED: f64 = 0.75;
+
 /// The rows of a place, and where each is open.
 pub struct Through<'a> {
     rows: Vec<Seen<'a>>,
@@ -252,10 +256,47 @@ impl<'a> Through<'a> {
             (true, false) if !is_told_within(other.direction) && self.is_as_aisles(common) => {
                 if self.is_closed(common) { CLOSED } else { PAST }
             }
-            (true, false) if self.rows[common.rows[0]].is_as_bays(common.ends) => SOME,
+            // Goods hardly narrow an empty bay of each row alike; racks end so.
+            (true, false) if self.rows[common.rows[0]].is_as_bays(common.ends) && !self.is_closed(common) => SOME,
             (true, false) => OTHER,
         };
-        common.chance < limit && !self.is_walled(common)
+        common.chance < limit && !self.is_walled(common) && !self.leads_through_bays(common)
+    }
+
+    /// True when something closes the rows' ends as a rule, and next to nothing closes them on one of its sides, where posts
+    /// stand: it leads through bays.
+    fn leads_through_bays(&self, common: &Common) -> bool {
+        let (mut sides, mut ends) = ([Vec::new(), Vec::new()], Vec::new());
+        for &n in &common.rows {
+            let Seen { row, columns, .. } = &self.rows[n];
+            let own = self.open_at(n, common.ends).unwrap_or(self.rows[n].stretch(common.ends));
+            for side in [0, 1] {
+                if !self.reaches_wall(n, own, side) {
+                    sides[side].push(columns.is_closed_at(own[side]));
+                }
+                let off = columns.first(side == 0)[0];
+                let end = off.map(|off| if side == 0 { row.along[0] + off } else { row.along[1] - off });
+                let elsewhere = |end: &f64| own.iter().all(|side| (side - end).abs() > AT_WALL);
+                ends.extend(end.filter(elsewhere).map(|end| columns.is_closed_at(end)));
+            }
+        }
+        let share = |closed: &[bool]| closed.iter().filter(|is| **is).count() as f64 / closed.len() as f64;
+        ends.len() >= ENDS
+            && share(&ends) >= GUARDED
+            && sides.iter().any(|side| share(side) <= 1.0 - GUARDED)
+            && !self.is_past_ends(common)
+    }
+
+    /// From where to where along a row what is open in several lies open in it.
+    fn open_at(&self, row: usize, ends: [f64; 2]) -> Option<[f64; 2]> {
+        let (seen, ends) = (&self.rows[row], self.rows[row].stretch(ends));
+        let mut open = self.open.of(row).iter().map(|&open| seen.stretch(open));
+        open.find(|&open| overlap(open, ends) > 0.0)
+    }
+
+    /// True when a stretch of a row goes on to a wall that ends it on one side.
+    fn reaches_wall(&self, row: usize, ends: [f64; 2], side: usize) -> bool {
+        self.walled[row][side] && (ends[side] - self.rows[row].row.along[side]).abs() <= AT_WALL
     }
 
     /// True when a wall runs along one of its rows there, as behind a rack of which only that is left.
@@ -280,11 +321,9 @@ impl<'a> Through<'a> {
     /// True when it lies between the ends of all its rows, which are in line, and a wall that ends them.
     fn is_past_ends(&self, common: &Common) -> bool {
         let is_last = |n: usize, side: usize| {
-            let seen = &self.rows[n];
-            let ends = seen.stretch(common.ends);
-            let open = self.open.of(n).iter().map(|&open| seen.stretch(open)).find(|&open| overlap(open, ends) > 0.0);
-            self.walled[n][side]
-                && (ends[side] - seen.row.along[side]).abs() <= AT_WALL
+            let ends = self.rows[n].stretch(common.ends);
+            let open = self.open_at(n, common.ends);
+            self.reaches_wall(n, ends, side)
                 && open.is_some_and(|open| (open[1 - side] - ends[1 - side]).abs() <= SLACK)
         };
         [0, 1].into_iter().any(|side| common.rows.iter().all(|&n| is_last(n, side)))

@@ -1,15 +1,18 @@
 //! The map turned so that one direction lies along the columns: where its places are, and by which keys what is found in
 //! it is kept. What its cells hold is in `sampled.rs`, what lies on its lines in `lined.rs`.
 
+use super::framed;
 use super::grounds::Grounds;
 use super::lined::Lined;
 use super::look::{LANES, Look};
 use super::panes::{Across, Pane};
+use super::pitch;
 use super::quarter::Quarter;
 use super::recall::Key;
 use super::rows::Row;
 use super::summed::Summed;
 use super::sums::{Cells, Known, Told, What, are_many};
+use super::uprights::Upright;
 use super::{Evidence, Scene};
 use crate::bits::Bits;
 use crate::ends::wider;
@@ -42,6 +45,8 @@ pub struct Turned {
     pub(super) samples: u32,
     /// Distance from post to post along its lines, metres, where posts recur.
     pub pitch: Option<f64>,
+    /// The same by frames that stand alone, where too few posts recur.
+    framed: Option<f64>,
     /// Offsets of the direction's lines, ascending.
     pub offsets: Arc<Vec<f64>>,
     /// For each of those lines, whether structure lies on it in each column.
@@ -82,6 +87,7 @@ impl Turned {
         });
         made.lie(&scene.grid.frame, &self.lined);
         made.lined = Arc::clone(&self.lined);
+        made.framed = self.framed;
         made
     }
 
@@ -110,6 +116,7 @@ impl Turned {
             known: Known::default(),
             samples,
             pitch: None,
+            framed: None,
             offsets: Arc::default(),
             covered: Arc::default(),
             touched: Arc::default(),
@@ -150,9 +157,15 @@ impl Turned {
         (self.cells, self.rows, self.known) = (cells, Arc::new(rows), Known::default());
     }
 
+    /// With what frames among some uprights tell.
+    pub fn framed(mut self, uprights: &[Upright]) -> Self {
+        self.framed = framed::pitch(uprights, self.heading);
+        self
+    }
+
     /// Finds what recurs along the lines of what is seen; of the gradients the specks are asked.
     pub fn recur(&mut self, evidence: &Evidence) {
-        self.pitch = super::pitch::find(evidence, self);
+        self.pitch = pitch::find(evidence, self).or(self.framed);
         if evidence.recall.keeps() {
             self.keys = self.find_keys();
         }

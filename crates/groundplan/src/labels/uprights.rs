@@ -4,8 +4,8 @@ use crate::grid::Frame;
 use crate::pixels::Pixels;
 use crate::sets::Sets;
 
-/// What is longer than this is no upright, metres.
-const LONGEST: f64 = 1.7;
+/// What is longer than this is no upright, metres: a guard before two racks back to back.
+const LONGEST: f64 = 3.3;
 /// Edge pixels no further apart than this along either axis are of one thing.
 const GAP: u32 = 2;
 /// So many things at once are few.
