@@ -9,9 +9,11 @@ use std::collections::BTreeMap;
 /// A leg is no wider than this, and a plate or a guard no thicker, metres.
 const LEG: f64 = 0.3;
 const PLATE: f64 = 0.4;
-/// From face to face, of one rack or of two back to back, and of one at most, metres.
+/// From face to face of one rack or of two back to back, metres; one alone is no deeper than the last.
 const DEPTH: [f64; 2] = [0.5, 3.2];
 const SINGLE: f64 = 1.6;
+/// Where more legs than this stand around one, in line with it to either side, they are what a lidar saw of something else.
+const CROWD: usize = 24;
 /// What is in line is so near to the line, metres, and what is nearer than the other along it is one thing.
 const NEAR: f64 = 0.15;
 const APART: f64 = 0.3;
@@ -30,7 +32,7 @@ struct Frame {
     /// Across.
     faces: [f64; 2],
     is_plate: bool,
-    /// No deeper than a rack, or with the legs of two back to back: pillars are neither.
+    /// A plate, no deeper than a rack, or with the legs of two back to back: pillars are none of these.
     is_rack: bool,
 }
 
@@ -65,7 +67,7 @@ pub fn pitch(uprights: &[Upright], heading: [f64; 2]) -> Option<f64> {
     let by_frames = common(&bays).filter(|(pitch, count)| *count >= FRAMES && 2 * racks(*pitch, ALIKE) > *count);
     let posts = gaps(&posts);
     let by_posts = || common(&posts).filter(|(pitch, count)| *count >= POSTS && racks(*pitch, 2.0 * ALIKE) > 0);
-    let told = by_frames.or_else(by_posts).filter(|(pitch, _)| go_on(&posts, *pitch));
+    let told = by_frames.or_else(by_posts).filter(|(pitch, _)| goes_on(&posts, *pitch));
     told.map(|(pitch, _)| in_parts(pitch))
 }
 
@@ -84,9 +86,9 @@ fn common(gaps: &[Gap]) -> Option<(f64, usize)> {
     is_told.then_some((mean, most.len()))
 }
 
-/// True when one of those gaps that are so long begins where another ends: what leads across rows that are full has posts on both
-/// sides too, as far apart in each row.
-fn go_on(gaps: &[Gap], length: f64) -> bool {
+/// True when two gaps of a length follow one another: across rows that are full posts are as far apart on both sides of a way,
+/// but beyond them no others are.
+fn goes_on(gaps: &[Gap], length: f64) -> bool {
     let alike = |gap: &&Gap| (gap.length - length).abs() <= ALIKE;
     let cells = Cells::new([NEAR; 2], gaps.iter().map(Gap::begins));
     gaps.iter().filter(alike).any(|gap| {
@@ -113,6 +115,8 @@ fn standing(uprights: &[Upright], heading @ [cos, sin]: [f64; 2]) -> (Vec<Frame>
             plates.push(Frame { at, faces, is_plate: true, is_rack: true });
         }
     }
+    let cells = Cells::new([NEAR, DEPTH[1]], legs.iter().map(Frame::stands));
+    legs.retain(|leg| cells.around(leg.stands()).take(CROWD + 1).count() <= CROWD);
     let cells = Cells::new([NEAR, DEPTH[1]], legs.iter().map(Frame::stands));
     let frame = |one: &Frame, other: &Frame| {
         let is_near = |leg: &Frame| (leg.at - one.at).abs() <= NEAR;

@@ -15,7 +15,7 @@ use crate::grid::Frame;
 
 /// A way is so wide, metres.
 pub const WIDTH: (f64, f64) = (1.6, 8.0);
-/// A section up to this many pitches is an empty bay: of its pitch the posts take a little, and none is wider.
+/// A section up to this many pitches is an empty bay, by what is seen of it: posts take a little of each.
 const BAY: f64 = 1.03;
 /// What passes a row's end is at least so many pitches wide, or lies within its last bay.
 const NARROW: f64 = 0.8;

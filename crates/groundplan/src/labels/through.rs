@@ -50,9 +50,11 @@ const OTHER: f64 = 0.005;
 /// another width than those and a bay's.
 const SOME: f64 = 0.0005;
 
-/// So many ends of rows tell what closes them, where so much of them is closed.
+/// So many ends of rows tell what closes them, where so much of them is closed; what is less likely than this by chance is a
+/// way whatever closes its sides.
 const ENDS: usize = 4;
 const GUARDED: f64 = 0.75;
+const NEVER: f64 = 0.0001;
 
 /// The rows of a place, and where each is open.
 pub struct Through<'a> {
@@ -263,9 +265,12 @@ impl<'a> Through<'a> {
         common.chance < limit && !self.is_walled(common) && !self.leads_through_bays(common)
     }
 
-    /// True when something closes the rows' ends as a rule, and next to nothing closes them on one of its sides, where posts
-    /// stand: it leads through bays.
+    /// True when something closes the rows' ends as a rule, but for those at walls, and next to nothing closes them on one side
+    /// of what is as wide as bays: it leads through some.
     fn leads_through_bays(&self, common: &Common) -> bool {
+        if common.chance < NEVER || !self.rows[common.rows[0]].is_as_bays(common.ends) || self.is_past_ends(common) {
+            return false;
+        }
         let (mut sides, mut ends) = ([Vec::new(), Vec::new()], Vec::new());
         for &n in &common.rows {
             let Seen { row, columns, .. } = &self.rows[n];
@@ -276,15 +281,16 @@ impl<'a> Through<'a> {
                 }
                 let off = columns.first(side == 0)[0];
                 let end = off.map(|off| if side == 0 { row.along[0] + off } else { row.along[1] - off });
-                let elsewhere = |end: &f64| own.iter().all(|side| (side - end).abs() > AT_WALL);
-                ends.extend(end.filter(elsewhere).map(|end| columns.is_closed_at(end)));
+                let is_elsewhere = |end: &f64| {
+                    own.iter().all(|side| (side - end).abs() > AT_WALL) && !self.reaches_wall(n, [*end; 2], side)
+                };
+                ends.extend(end.filter(is_elsewhere).map(|end| columns.is_closed_at(end)));
             }
         }
         let share = |closed: &[bool]| closed.iter().filter(|is| **is).count() as f64 / closed.len() as f64;
         ends.len() >= ENDS
             && share(&ends) >= GUARDED
-            && sides.iter().any(|side| share(side) <= 1.0 - GUARDED)
-            && !self.is_past_ends(common)
+            && sides.iter().any(|side| !side.is_empty() && share(side) <= 1.0 - GUARDED)
     }
 
     /// From where to where along a row what is open in several lies open in it.

@@ -45,7 +45,7 @@ pub struct Turned {
     pub(super) samples: u32,
     /// Distance from post to post along its lines, metres, where posts recur.
     pub pitch: Option<f64>,
-    /// The same by frames that stand alone, where too few posts recur.
+    /// The same by frames that stand alone, which counts where too few posts recur.
     framed: Option<f64>,
     /// Offsets of the direction's lines, ascending.
     pub offsets: Arc<Vec<f64>>,

@@ -1,10 +1,10 @@
-//! Uprights: small things that stand by themselves, such as the legs of a rack and the plates that join two of them.
+//! Uprights: small things that stand by themselves, such as the legs of a rack, the plates that join two of them and guards.
 
 use crate::grid::Frame;
 use crate::pixels::Pixels;
 use crate::sets::Sets;
 
-/// What is longer than this is no upright, metres: a guard before two racks back to back.
+/// What is longer than this is no upright, metres; guards before two racks back to back are not.
 const LONGEST: f64 = 3.3;
 /// Edge pixels no further apart than this along either axis are of one thing.
 const GAP: u32 = 2;
