@@ -1,6 +1,7 @@
 //! Ways through rows of racks: gates, which are too short to be known by walls of their own.
 
 use super::Evidence;
+use super::bars;
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
 use super::empties;
@@ -83,10 +84,11 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let through = through.find(strips, &mut sure, |direction| within[direction]);
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
     let open = LazyCell::new(|| passing::open_through(views, &known, &doubtful));
+    let between_bars = LazyCell::new(|| bars::are_between(evidence, look, views, &known, &doubtful));
     let is_told = |n: usize, gate: &Strip| {
         let widths = &sure[gate.direction];
         let pitch = crossing(views, gate.direction).and_then(|view| view.pitch);
-        !is_any_known(gate.direction) || widths.have(gate.width() + BETWEEN_CELLS, pitch) || open[n]
+        !is_any_known(gate.direction) || widths.have(gate.width() + BETWEEN_CELLS, pitch) || open[n] || between_bars[n]
     };
     gates.extend(doubtful.iter().enumerate().filter(|(n, gate)| is_told(*n, gate)).map(|(_, gate)| gate.clone()));
     // Where no row beside tells a bay from a way, a way is as wide as others of the place; and where ways are staggered from

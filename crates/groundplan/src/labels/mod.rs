@@ -3,6 +3,7 @@
 mod alone;
 mod at_walls;
 mod barriers;
+mod bars;
 mod bays;
 mod bends;
 mod beside;

@@ -161,6 +161,14 @@ impl<'a> Columns<'a> {
         runs(&open, true).into_iter().map(|(from, to)| [self.place(from), self.place(to)]).collect()
     }
 
+    /// What is free between two uprights for so much, metres, and whether all of the row's depth is closed at its ends.
+    pub fn free(&self, least: f64) -> Vec<([f64; 2], [bool; 2])> {
+        let is_free =
+            |from: usize, to: usize| self.place(to) - self.place(from) >= least && self.share(from, to) <= CLUTTER;
+        let closed = |ends: [f64; 2]| (ends, ends.map(|end| self.is_closed_at(end)));
+        self.gaps(is_free).into_iter().map(closed).collect()
+    }
+
     /// How far from its lower end, or from its upper one, the first of it stands, metres, and the first that fills half of it:
     /// nothing where nothing does.
     pub fn first(&self, from_low: bool) -> [Option<f64>; 2] {

@@ -228,7 +228,7 @@ impl Plan {
         let (known, more) = (plan.strips.len(), ways.len() + as_bays.len());
         plan.strips.extend(ways);
         let across = plan.strips.clone();
-        plan.strips = widths::alike(views, plan.strips);
+        plan.strips = widths::alike(evidence, look, views, plan.strips);
         plan.strips.extend(as_bays);
         plan.strips = joined::apart(views, plan.strips);
         let carried = carried::on(evidence, look, views, plan.strips.clone());

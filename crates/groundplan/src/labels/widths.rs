@@ -1,9 +1,12 @@
 //! Ways across rows are of one width: what leads through all rows of a place tells what leads through some of them.
 
+use super::Evidence;
 use super::alone::Alone;
+use super::bars::Bars;
 use super::beside::placed;
 use super::corridors::Strip;
 use super::empties;
+use super::look::Look;
 use super::passing::{Passing, Place};
 use super::rows::SHORTEST;
 use super::sections::is_as_bays;
@@ -86,7 +89,7 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 /// width is none, nor what leads through rows of two racks that are open more often than by chance; where something does, what
 /// lies as empty bays do is one. What leads past rows' ends up to one that goes on farther is none, but where something leads
 /// through all and it is as wide as bays. Nor those beside which, with no rack between, one leads through more rows.
-pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
+pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let placed = placed(views, strips.iter().map(Strip::place));
     for place in Place::of_each(views, &strips) {
@@ -101,6 +104,7 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
             }
         }
         let alone = LazyCell::new(|| Alone::new(&place, &strips));
+        let bars = LazyCell::new(|| Bars::new(evidence, look, &place, &strips));
         for (n, own) in passing.iter().enumerate() {
             if own.rows.is_empty() || own.rest > REST {
                 continue;
@@ -124,7 +128,9 @@ pub fn alike(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
             let is_as_bays_lie = || alone.is_as_bays_lie(&place, &strips, own, width);
             let is_empty = || *is_told_within && may_be_bay() && empties::is_empty(&place, &strips, n);
             let lies_as_bays = || is_as_bays_lie() || is_empty();
-            stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && !is_bay() && !lies_as_bays());
+            // What lies between bars is none, wherever it lies.
+            let is_told = || !(is_bay() || lies_as_bays()) || bars.are_beside(n, own);
+            stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && is_told());
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
             let is_beside = |m: usize| {
                 let [low, high] = shared(strips[n].across, strips[m].across);
