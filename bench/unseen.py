@@ -1,8 +1,9 @@
 """Typed junctions and corridors of warehouses that nothing was chosen on: bench/unseen.py [SETS].
 
 The suite ``warehouses`` with other seeds, each site turned by up to 20 degrees more; sites whose every measure is drawn
-at random: aisles of 2.4 to 4 m, bays of 2 to 3.6 m, up to half of them empty, and one of eight hard kinds each; and
-small halls of which 30 to 65 percent of the bays are empty. A site that has no room for its rows is left out. SETS
+at random: aisles of 2.4 to 4 m, bays of 2 to 3.6 m, up to half of them empty, and one of eight hard kinds each;
+small halls of which 30 to 65 percent of the bays are empty; and the suite's sites whose ways are staggered from row to
+row, every measure within 15 percent of theirs. A site that has no room for its rows is left out. SETS
 (default 1) makes as many of each, of which the first is what docs/approaches.md tells of; no bar, so no exit code.
 """
 
@@ -24,6 +25,7 @@ from groundplan.simulate import warehouse
 
 SUITE = Path(groundplan.__file__).parent / "evaluate" / "warehouses.toml"
 FIGURES = ("junction_f1", "junction_typed_f1", "corridor_recall", "corridor_precision")
+MEASURES = ("width", "depth", "aisle", "cross_aisle", "bay", "rack_depth")
 Options = dict[str, Any]
 
 
@@ -87,6 +89,25 @@ def _half_empty(seed: int, kind: int) -> Options:
     return options | ({"halls": 2, "gap": draw.choice([0.5, 0.6, 3.0])} if kind % 4 == 1 else {})
 
 
+def staggered(number: int) -> list[Options]:
+    """The suite's staggered sites, five of each, with other measures."""
+    cases = [case for case in tomllib.loads(SUITE.read_text())["case"] if "staggered" in case]
+    return [_staggered(case, 60 + 5 * number + n) for n in range(5) for case in cases]
+
+
+def _staggered(case: Options, number: int) -> Options:
+    options = {name: value for name, value in case.items() if name not in ("name", "kind")}
+    seed = options["seed"] + 1000 * number + 7
+    draw = random.Random(seed)
+    options |= {"seed": seed, "yaw": round(options.get("yaw", 0) + draw.uniform(-20, 20), 1)}
+    for name in [name for name in MEASURES if name in options]:
+        options[name] = round(options[name] * draw.uniform(0.85, 1.15), 2)
+    for name, usual in (("aisle", 2.8), ("cross_aisle", 3.4)):
+        if name not in options:
+            options[name] = round(usual * draw.uniform(0.88, 1.2), 2)
+    return options
+
+
 def scores(options: Options) -> list[float] | None:
     """The figures of one site; none where its rows have no room."""
     try:
@@ -107,6 +128,7 @@ def main() -> None:
                 ("other seeds", reseeded(number)),
                 ("random", drawn(number)),
                 ("half empty", half_empty(number)),
+                ("staggered", staggered(number)),
             ):
                 rows = [row for row in pool.map(scores, sites) if row is not None]
                 f1, typed, recall, precision = (statistics.mean(column) for column in zip(*rows, strict=True))

@@ -5,11 +5,12 @@ use super::Evidence;
 use super::corridors::Strip;
 use super::gates::walled;
 use super::look::Look;
-use super::passing::{Passing, Place};
+use super::passing::Place;
 use super::sections::Columns;
 use super::turned::Turned;
 use crate::ends::{overlap, sorted, wider};
-use std::collections::BTreeSet;
+use std::cell::OnceCell;
+use std::iter::Sum;
 
 /// What is free of a row for so much, metres, has two ends of its own.
 const FREE: f64 = 0.5;
@@ -25,15 +26,14 @@ pub fn are_between(evidence: &Evidence, look: &Look, views: &[Turned], strips: &
     for place in Place::of_each(views, &all) {
         let bars = Bars::new(evidence, look, &place, &all);
         for (n, is_between) in between.iter_mut().enumerate() {
-            let n = strips.len() + n;
-            *is_between |= bars.are_beside(n, &place.passing[n]);
+            *is_between |= bars.are_beside(strips.len() + n);
         }
     }
     between
 }
 
 /// How often something is closed.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Default)]
 struct Often {
     closed: u32,
     open: u32,
@@ -61,12 +61,26 @@ impl Often {
     fn likelihood(self, share: f64) -> f64 {
         libm::pow(share, f64::from(self.closed)) * libm::pow(1.0 - share, f64::from(self.open))
     }
+
+    /// True when it is clearly closed as often as rows' ends are, and not as what is beside bays.
+    fn is_as(self, ends: Self, bays: Self) -> bool {
+        self.likelihood(ends.share()) > LIKELIER * self.likelihood(bays.share())
+    }
 }
 
-/// What closes the rows of a place.
+impl Sum for Often {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), Self::and)
+    }
+}
+
+/// What closes the rows of a place: each is looked at when it is first asked.
 pub struct Bars<'a> {
+    evidence: &'a Evidence<'a>,
+    look: &'a Look<'a>,
     place: &'a Place<'a>,
-    rows: Vec<Closed>,
+    strips: &'a [Strip],
+    rows: Vec<OnceCell<Closed>>,
 }
 
 /// What closes a row: at its ends, but for those at walls, beside what is free of it and no way, and beside each way.
@@ -77,26 +91,25 @@ struct Closed {
 }
 
 impl<'a> Bars<'a> {
-    pub fn new(evidence: &Evidence, look: &Look, place: &'a Place<'a>, strips: &[Strip]) -> Self {
-        let rows = (0..place.rows.len()).map(|row| Closed::new(evidence, look, place, strips, row)).collect();
-        Self { place, rows }
+    pub fn new(evidence: &'a Evidence, look: &'a Look, place: &'a Place, strips: &'a [Strip]) -> Self {
+        Self { evidence, look, place, strips, rows: place.rows.iter().map(|_| OnceCell::new()).collect() }
     }
 
-    /// True when what passes through some of the rows between their ends lies between bars.
-    pub fn are_beside(&self, n: usize, own: &Passing) -> bool {
+    /// True when what one of the strips passes through of the rows, between their ends, lies between bars.
+    pub fn are_beside(&self, n: usize) -> bool {
+        let own = &self.place.passing[n];
         let (Some(first), true) = (self.place.first_of(own), own.is_within) else { return false };
-        let part = self.place.rows_with(first);
-        let sum = |rows: &BTreeSet<usize>, of: &dyn Fn(&usize) -> Often| {
-            rows.iter().map(of).fold(Often::default(), Often::and)
-        };
-        let [ends, bays] =
-            [sum(&part, &|&row| self.rows[row].ends), sum(&part, &|&row| self.rows[row].bays)].map(Often::share);
+        let part = || self.place.rows_with(first).into_iter().map(|row| self.row(row));
         let beside = |&row: &usize| {
             let place = self.place.through[row].iter().position(|&way| way == n);
-            place.map_or(Often::default(), |place| self.rows[row].ways[place])
+            place.map_or(Often::default(), |place| self.row(row).ways[place])
         };
-        let own = sum(&own.rows.iter().copied().collect(), &beside);
-        own.likelihood(ends) > LIKELIER * own.likelihood(bays)
+        let sides: Often = own.rows.iter().map(beside).sum();
+        sides.is_as(part().map(|row| row.ends).sum(), part().map(|row| row.bays).sum())
+    }
+
+    fn row(&self, n: usize) -> &Closed {
+        self.rows[n].get_or_init(|| Closed::new(self.evidence, self.look, self.place, self.strips, n))
     }
 }
 
@@ -126,7 +139,7 @@ impl Closed {
         let free = columns.free(FREE).into_iter().filter(|&(ends, _)| !is_of_way(ends));
         // Between two bars a way may lie that is not known.
         let closed = |sides: [bool; 2]| if sides == [true; 2] { Often::default() } else { Often::of(sides) };
-        let bays = free.map(|(_, sides)| closed(sides)).fold(Often::default(), Often::and);
+        let bays = free.map(|(_, sides)| closed(sides)).sum();
         let ways = ways.iter().map(|&way| Often::of(sides(way).map(|side| columns.is_closed_at(side)))).collect();
         Self { ends, bays, ways }
     }
@@ -142,14 +155,11 @@ mod tests {
 
     #[test]
     fn two_bars_tell_a_way_where_they_end_rows_and_do_not_stand_beside_bays() {
-        let is_told = |ends: Often, bays: Often, own: Often| {
-            own.likelihood(ends.share()) > LIKELIER * own.likelihood(bays.share())
-        };
-        assert!(is_told(often(8, 0), often(0, 8), often(2, 0)));
-        assert!(!is_told(often(8, 0), often(0, 8), often(1, 1)));
+        assert!(often(2, 0).is_as(often(8, 0), often(0, 8)));
+        assert!(!often(1, 1).is_as(often(8, 0), often(0, 8)));
         // Frames that close their bays, rows that nothing ends, and too little that is known of either.
-        assert!(!is_told(often(8, 0), often(4, 4), often(2, 0)));
-        assert!(!is_told(often(0, 8), often(0, 8), often(2, 0)));
-        assert!(!is_told(often(0, 0), often(0, 1), often(2, 0)));
+        assert!(!often(2, 0).is_as(often(8, 0), often(4, 4)));
+        assert!(!often(2, 0).is_as(often(0, 8), often(0, 8)));
+        assert!(!often(2, 0).is_as(often(0, 0), often(0, 1)));
     }
 }

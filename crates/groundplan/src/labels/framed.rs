@@ -1,21 +1,20 @@
 //! The pitch of racks of which most bays are empty: too few posts recur along all lines, but what stands by itself is posts and
 //! frames there, and from one to the next in line it is a bay.
 
+use super::frames::{LEG, NEAR};
 use super::pitch::{LAGS, LONGEST, in_parts};
 use super::uprights::Upright;
 use crate::ends::{holds, overlap, sorted};
 use std::collections::BTreeMap;
 
-/// A leg is no wider than this, and a plate or a guard no thicker, metres.
-const LEG: f64 = 0.3;
+/// A plate or a guard is no thicker than this, metres.
 const PLATE: f64 = 0.4;
 /// From face to face of one rack or of two back to back, metres; one alone is no deeper than the last.
 const DEPTH: [f64; 2] = [0.5, 3.2];
 const SINGLE: f64 = 1.6;
 /// Where more legs than this stand around one, in line with it to either side, they are what a lidar saw of something else.
 const CROWD: usize = 24;
-/// What is in line is so near to the line, metres, and what is nearer than the other along it is one thing.
-const NEAR: f64 = 0.15;
+/// What is nearer than this along a line is one thing, metres.
 const APART: f64 = 0.3;
 /// Gaps are of one length when they differ by no more than this, metres.
 const ALIKE: f64 = 0.1;

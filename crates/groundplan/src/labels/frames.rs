@@ -5,7 +5,7 @@ use crate::ends::holds;
 use std::collections::BTreeMap;
 
 /// A leg is no wider than this, metres.
-const LEG: f64 = 0.3;
+pub const LEG: f64 = 0.3;
 /// From leg to leg across a frame, metres.
 const DEPTH: [f64; 2] = [0.4, 1.6];
 /// Legs of a frame are nearer to each other than so much of the aisle beyond them, which is looked for so far, metres.

@@ -88,7 +88,8 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 /// those at a wall that the rows beside go on to. Where nothing leads through all but past their ends, what has no bays'
 /// width is none, nor what leads through rows of two racks that are open more often than by chance; where something does, what
 /// lies as empty bays do is one. What leads past rows' ends up to one that goes on farther is none, but where something leads
-/// through all and it is as wide as bays. Nor those beside which, with no rack between, one leads through more rows.
+/// through all and it is as wide as bays. Nor those beside which, with no rack between, one leads through more rows. What lies
+/// between bars is no bay, wherever it lies.
 pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let placed = placed(views, strips.iter().map(Strip::place));
@@ -104,7 +105,7 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Str
             }
         }
         let alone = LazyCell::new(|| Alone::new(&place, &strips));
-        let bars = LazyCell::new(|| Bars::new(evidence, look, &place, &strips));
+        let bars = Bars::new(evidence, look, &place, &strips);
         for (n, own) in passing.iter().enumerate() {
             if own.rows.is_empty() || own.rest > REST {
                 continue;
@@ -128,8 +129,8 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Str
             let is_as_bays_lie = || alone.is_as_bays_lie(&place, &strips, own, width);
             let is_empty = || *is_told_within && may_be_bay() && empties::is_empty(&place, &strips, n);
             let lies_as_bays = || is_as_bays_lie() || is_empty();
-            // What lies between bars is none, wherever it lies.
-            let is_told = || !(is_bay() || lies_as_bays()) || bars.are_beside(n, own);
+            // What lies between bars is no bay, be it where bays lie.
+            let is_told = || !(is_bay() || lies_as_bays()) || bars.are_beside(n);
             stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && is_told());
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
             let is_beside = |m: usize| {
