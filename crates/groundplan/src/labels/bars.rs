@@ -16,6 +16,8 @@ use std::iter::Sum;
 const FREE: f64 = 0.5;
 /// What is so near to a way's sides is of that, metres, and a wall so near to a row's end ends it.
 const NEAR: f64 = 0.3;
+/// What lies between bars is no narrower than so many bays: posts or goods narrow an empty one.
+const AS_WIDE: f64 = 0.95;
 /// Bars stand beside a way when that is so many times as likely as that they do beside an empty bay.
 const LIKELIER: f64 = 10.0;
 
@@ -97,15 +99,32 @@ impl<'a> Bars<'a> {
 
     /// True when what one of the strips passes through of the rows, between their ends, lies between bars.
     pub fn are_beside(&self, n: usize) -> bool {
+        let is_as_wide = |bay: f64| self.strips[n].width() >= AS_WIDE * bay;
+        self.place.views[0].pitch.is_none_or(is_as_wide)
+            && self.beside(n).is_some_and(|[sides, ends, bays]| sides.is_as(ends, bays))
+    }
+
+    /// True when bays are known and bars stand at no side of it, as they do not beside bays and do at the rows' ends.
+    pub fn are_missed(&self, n: usize) -> bool {
+        self.place.views[0].pitch.is_some()
+            && self.beside(n).is_some_and(|[sides, ends, bays]| sides.closed == 0 && sides.is_as(bays, ends))
+    }
+
+    /// How often the sides of what one of the strips passes through are closed, and the ends of the rows of that part of the
+    /// place, and what is beside their bays.
+    fn beside(&self, n: usize) -> Option<[Often; 3]> {
         let own = &self.place.passing[n];
-        let (Some(first), true) = (self.place.first_of(own), own.is_within) else { return false };
-        let part = || self.place.rows_with(first).into_iter().map(|row| self.row(row));
+        let first = self.place.first_of(own).filter(|_| own.is_within)?;
+        let part: Vec<&Closed> = self.place.rows_with(first).into_iter().map(|row| self.row(row)).collect();
         let beside = |&row: &usize| {
             let place = self.place.through[row].iter().position(|&way| way == n);
             place.map_or(Often::default(), |place| self.row(row).ways[place])
         };
-        let sides: Often = own.rows.iter().map(beside).sum();
-        sides.is_as(part().map(|row| row.ends).sum(), part().map(|row| row.bays).sum())
+        Some([
+            own.rows.iter().map(beside).sum(),
+            part.iter().map(|row| row.ends).sum(),
+            part.iter().map(|row| row.bays).sum(),
+        ])
     }
 
     fn row(&self, n: usize) -> &Closed {
@@ -122,7 +141,7 @@ impl Closed {
         let sides = |way: usize| sorted(strips[way].across.map(place_of));
         let between = between.map(|aisle| place.aisles[aisle]);
         let is_at_wall = |end: f64| walled(view, strips, row, between, view.columns(wider([end; 2], NEAR))).any();
-        let is_of_way = |ends: [f64; 2]| ways.iter().any(|&way| overlap(wider(sides(way), NEAR), ends) > 0.0);
+        let is_of_way = |ends: [f64; 2]| ways.iter().any(|&way| overlap(wider(sides(way), NEAR), ends) >= 0.0);
         // What leads past the row's end, or through all rows, is a way.
         let centre = f64::midpoint(row.along[0], row.along[1]);
         let known = ways.iter().flat_map(|&way| {

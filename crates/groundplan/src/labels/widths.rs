@@ -126,12 +126,18 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Str
                         |pitch| !is_as_bays(width, pitch),
                     ) || place.is_open_through(&strips, own, width))
             };
-            let is_as_bays_lie = || alone.is_as_bays_lie(&place, &strips, own, width);
+            let may_lie = || view.pitch.is_none() || may_be_bay();
+            let is_as_bays_lie = || may_lie() && alone.is_as_bays_lie(&place, &strips, own, width);
             let is_empty = || *is_told_within && may_be_bay() && empties::is_empty(&place, &strips, n);
             let lies_as_bays = || is_as_bays_lie() || is_empty();
-            // What lies between bars is no bay, be it where bays lie.
-            let is_told = || !(is_bay() || lies_as_bays()) || bars.are_beside(n);
-            stays[n] &= !is_some || ((known.have(width, view.pitch) || is_no_bay()) && is_told());
+            // Where the width tells a way and the place a bay, or neither does, bars tell.
+            let is_told = || match (known.have(width, view.pitch) || is_no_bay(), is_bay() || lies_as_bays()) {
+                (true, false) => !bars.are_missed(n),
+                (false, true) => false,
+                (true, true) => bars.are_beside(n),
+                (false, false) => !*is_told_within && view.pitch.is_some() && bars.are_beside(n),
+            };
+            stays[n] &= !is_some || is_told();
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
             let is_beside = |m: usize| {
                 let [low, high] = shared(strips[n].across, strips[m].across);
