@@ -5,11 +5,14 @@ use super::Evidence;
 use super::corridors::Strip;
 use super::gates::walled;
 use super::look::Look;
+use super::meeting::CLUTTER;
 use super::passing::Place;
-use super::sections::Columns;
+use super::rows::SHORTEST;
+use super::sections::{Columns, SIDE};
 use super::turned::Turned;
 use crate::ends::{overlap, sorted, wider};
 use std::cell::OnceCell;
+use std::iter;
 use std::iter::Sum;
 
 /// What is free of a row for so much, metres, has two ends of its own.
@@ -64,9 +67,9 @@ impl Often {
         libm::pow(share, f64::from(self.closed)) * libm::pow(1.0 - share, f64::from(self.open))
     }
 
-    /// True when it is clearly closed as often as rows' ends are, and not as what is beside bays.
-    fn is_as(self, ends: Self, bays: Self) -> bool {
-        self.likelihood(ends.share()) > LIKELIER * self.likelihood(bays.share())
+    /// True when it is clearly closed as often as the one, and not as the other.
+    fn is_as(self, one: Self, other: Self) -> bool {
+        self.likelihood(one.share()) > LIKELIER * self.likelihood(other.share())
     }
 }
 
@@ -76,20 +79,38 @@ impl Sum for Often {
     }
 }
 
+/// How often bars stand at the sides of something, and elsewhere in its part of the place at the rows' ends and beside bays.
+struct Told {
+    sides: Often,
+    ends: Often,
+    bays: Often,
+}
+
+impl Told {
+    fn is_way(&self) -> bool {
+        self.sides.is_as(self.ends, self.bays)
+    }
+
+    /// No bar stands at its sides.
+    fn is_bay(&self) -> bool {
+        self.sides.closed == 0 && self.sides.is_as(self.bays, self.ends)
+    }
+}
+
 /// What closes the rows of a place: each is looked at when it is first asked.
 pub struct Bars<'a> {
     evidence: &'a Evidence<'a>,
     look: &'a Look<'a>,
     place: &'a Place<'a>,
     strips: &'a [Strip],
-    rows: Vec<OnceCell<Closed>>,
+    rows: Vec<OnceCell<Closed<'a>>>,
 }
 
-/// What closes a row: at its ends, but for those at walls, beside what is free of it and no way, and beside each way.
-struct Closed {
+/// A row, and how often it is closed at its ends, but for those at walls, and beside what is free of it and no way.
+struct Closed<'a> {
+    columns: Columns<'a>,
     ends: Often,
     bays: Often,
-    ways: Vec<Often>,
 }
 
 impl<'a> Bars<'a> {
@@ -101,44 +122,95 @@ impl<'a> Bars<'a> {
     pub fn are_beside(&self, n: usize) -> bool {
         let is_as_wide = |bay: f64| self.strips[n].width() >= AS_WIDE * bay;
         self.place.views[0].pitch.is_none_or(is_as_wide)
-            && self.beside(n).is_some_and(|[sides, ends, bays]| sides.is_as(ends, bays))
+            && self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_way())
     }
 
     /// True when bays are known and bars stand at no side of it, as they do not beside bays and do at the rows' ends.
     pub fn are_missed(&self, n: usize) -> bool {
-        self.place.views[0].pitch.is_some()
-            && self.beside(n).is_some_and(|[sides, ends, bays]| sides.closed == 0 && sides.is_as(bays, ends))
+        self.is_bay(n, &self.place.passing[n].rows)
     }
 
-    /// How often the sides of what one of the strips passes through are closed, and the ends of the rows of that part of the
-    /// place, and what is beside their bays.
-    fn beside(&self, n: usize) -> Option<[Often; 3]> {
-        let own = &self.place.passing[n];
-        let first = self.place.first_of(own).filter(|_| own.is_within)?;
-        let part: Vec<&Closed> = self.place.rows_with(first).into_iter().map(|row| self.row(row)).collect();
-        let beside = |&row: &usize| {
-            let place = self.place.through[row].iter().position(|&way| way == n);
-            place.map_or(Often::default(), |place| self.row(row).ways[place])
+    /// One of the strips, in pieces without those of several rows through which it leads over posts of bays that no bars are
+    /// beside; where such a row is the next one it stops.
+    pub fn cut(&self, n: usize) -> Vec<Strip> {
+        let (own, mut strip) = (&self.place.passing[n], self.strips[n].clone());
+        let is_over_bay = |&row: &usize| {
+            self.stands_in(n, row) && self.is_bay(n, &[row]) && self.row(row).columns.stands_between(self.sides(n, row))
         };
-        Some([
-            own.rows.iter().map(beside).sum(),
-            part.iter().map(|row| row.ends).sum(),
-            part.iter().map(|row| row.bays).sum(),
-        ])
+        if !own.is_within || self.place.views[0].pitch.is_none() {
+            return vec![strip];
+        }
+        let missed: Vec<usize> =
+            own.rows.iter().copied().filter(|row| own.rows.len() > 1 && is_over_bay(row)).collect();
+        for row in own.next.iter().copied().filter(is_over_bay) {
+            strip.stops[usize::from(self.along(n, row)[0] > strip.along[0])] = true;
+        }
+        let mut without: Vec<[f64; 2]> = missed.iter().map(|&row| self.along(n, row)).collect();
+        without.sort_by(|one, two| one[0].total_cmp(&two[0]));
+        let [first, last] = strip.along;
+        let starts = iter::once(first).chain(without.iter().map(|[_, to]| *to));
+        let ends = without.iter().map(|[from, _]| *from).chain(iter::once(last));
+        let piece = |(from, to): (f64, f64)| {
+            let stops = [strip.stops[0] || from != first, strip.stops[1] || to != last];
+            Strip { along: [from, to], stops, ..strip.clone() }
+        };
+        let leads_through = |piece: &Strip| {
+            missed.is_empty() || own.rows.iter().any(|&row| overlap(piece.along, self.along(n, row)) > SHORTEST)
+        };
+        starts.zip(ends).map(piece).filter(leads_through).collect()
     }
 
-    fn row(&self, n: usize) -> &Closed {
-        self.rows[n].get_or_init(|| Closed::new(self.evidence, self.look, self.place, self.strips, n))
+    /// True when bays are known and it is one that some rows have between the sides of a strip, by the bars.
+    fn is_bay(&self, n: usize, rows: &[usize]) -> bool {
+        self.place.views[0].pitch.is_some() && self.told(n, rows).is_some_and(|told| told.is_bay())
     }
-}
 
-impl Closed {
-    fn new(evidence: &Evidence, look: &Look, place: &Place, strips: &[Strip], row: usize) -> Self {
-        let ([view, other], (row, between), ways) = (place.views, &place.rows[row], &place.through[row]);
-        let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, view.pitch);
+    /// How often the sides of a strip are closed in some rows, if it passes between rows' ends.
+    fn told(&self, n: usize, rows: &[usize]) -> Option<Told> {
+        let first = self.place.first_of(&self.place.passing[n]).filter(|_| self.place.passing[n].is_within)?;
+        let part: Vec<&Closed> = self.place.rows_with(first).into_iter().map(|row| self.row(row)).collect();
+        let sides = |&row: &usize| {
+            Often::of(self.sides(n, row).into_iter().map(|side| self.row(row).columns.is_closed_at(side)))
+        };
+        Some(Told {
+            sides: rows.iter().map(sides).sum(),
+            ends: part.iter().map(|row| row.ends).sum(),
+            bays: part.iter().map(|row| row.bays).sum(),
+        })
+    }
+
+    /// From the middle of the aisle on a row's one side to that on the other, along a strip.
+    fn along(&self, n: usize, row: usize) -> [f64; 2] {
+        let [view, other] = self.place.views;
+        let middle = |aisle: usize| self.strips[self.place.aisles[aisle]].middle();
+        sorted(self.place.rows[row].1.map(|aisle| view.crossing(other, middle(aisle), self.strips[n].middle())[0]))
+    }
+
+    /// From where to where along a row a strip lies.
+    fn sides(&self, n: usize, row: usize) -> [f64; 2] {
+        let ([view, other], row) = (self.place.views, &self.place.rows[row].0);
         let middle = f64::midpoint(row.across[0], row.across[1]);
-        let place_of = |across: f64| view.crossing(other, middle, across)[1];
-        let sides = |way: usize| sorted(strips[way].across.map(place_of));
+        sorted(self.strips[n].across.map(|across| view.crossing(other, middle, across)[1]))
+    }
+
+    /// True when something of a row stands in a strip, and one gets past it: for that the row's ends need no look.
+    fn stands_in(&self, n: usize, row: usize) -> bool {
+        let ([view, other], strip) = (self.place.views, &self.strips[n]);
+        let (row, [low, high]) = (&self.place.rows[row].0, wider(strip.across, -SIDE));
+        let along = sorted(row.across.map(|v| view.crossing(other, v, strip.middle())[0]));
+        let blocked = if low < high { other.some_blocked(other.columns(along), low, high) } else { Vec::new() };
+        blocked.iter().any(|share| *share > 0.0) && blocked.iter().all(|share| *share <= CLUTTER)
+    }
+
+    fn row(&self, n: usize) -> &Closed<'a> {
+        self.rows[n].get_or_init(|| self.look_at(n))
+    }
+
+    fn look_at(&self, n: usize) -> Closed<'a> {
+        let (place, strips) = (self.place, self.strips);
+        let ([view, other], (row, between), ways) = (place.views, &place.rows[n], &place.through[n]);
+        let columns = Columns::new(self.look, &self.evidence.grid.frame, [view, other], row, view.pitch);
+        let sides = |way: usize| self.sides(way, n);
         let between = between.map(|aisle| place.aisles[aisle]);
         let is_at_wall = |end: f64| walled(view, strips, row, between, view.columns(wider([end; 2], NEAR))).any();
         let is_of_way = |ends: [f64; 2]| ways.iter().any(|&way| overlap(wider(sides(way), NEAR), ends) >= 0.0);
@@ -159,8 +231,7 @@ impl Closed {
         // Between two bars a way may lie that is not known.
         let closed = |sides: [bool; 2]| if sides == [true; 2] { Often::default() } else { Often::of(sides) };
         let bays = free.map(|(_, sides)| closed(sides)).sum();
-        let ways = ways.iter().map(|&way| Often::of(sides(way).map(|side| columns.is_closed_at(side)))).collect();
-        Self { ends, bays, ways }
+        Closed { columns, ends, bays }
     }
 }
 

@@ -29,8 +29,8 @@ pub struct Strip {
     pub bays: bool,
     /// Its sides are no lines, and stand back from it.
     pub is_ragged: bool,
-    /// At which of its ends it goes on over what was not seen.
-    pub unseen: [bool; 2],
+    /// At which of its ends it leads to the first way only: it goes on over what was not seen there, or over empty bays.
+    pub stops: [bool; 2],
     /// Where it begins and ends without what lies beyond a gap longer than a bay and is no more than a speck, along.
     pub held: [f64; 2],
 }

@@ -377,7 +377,7 @@ mod tests {
             score: 0.0,
             bays: false,
             is_ragged: false,
-            unseen: [false; 2],
+            stops: [false; 2],
             held: UNTOLD,
         }
     }

@@ -45,7 +45,7 @@ pub fn whole(views: &[Turned], strips: &[Strip], racks: &[Row]) -> Vec<Strip> {
             };
             if on[1] - on[0] > SAME && is_free(on) {
                 whole.along[end] = on[end];
-                whole.unseen[end] = true;
+                whole.stops[end] = true;
             }
         }
         whole

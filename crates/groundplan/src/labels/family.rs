@@ -70,7 +70,7 @@ impl Candidate {
             score: self.score,
             bays: self.bays,
             is_ragged: false,
-            unseen: [false; 2],
+            stops: [false; 2],
             held: UNTOLD,
         }
     }

@@ -48,9 +48,9 @@ pub fn join(views: &[Turned], mut strips: Vec<Strip>, least: f64) -> Vec<Strip> 
             let bays = strips[a].bays && strips[b].bays;
             let is_ragged = strips[a].is_ragged || strips[b].is_ragged;
             let held = [strips[a].held[0], strips[b].held[1]];
-            let unseen = [strips[a].unseen[0], strips[b].unseen[1]];
+            let stops = [strips[a].stops[0], strips[b].stops[1]];
             let direction = strips[a].direction;
-            strips[a] = Strip { direction, along, across, score, bays, is_ragged, unseen, held };
+            strips[a] = Strip { direction, along, across, score, bays, is_ragged, stops, held };
             placed[direction].add(a, along, across);
             wholes.join(a as u32, b as u32);
         }

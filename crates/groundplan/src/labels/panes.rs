@@ -168,7 +168,7 @@ pub fn cut(views: &[Turned], ways: &mut Vec<Strip>) {
         for pane in views[way.direction].across.iter() {
             if let Some(place) = pane.bars(way).filter(|place| holds(way.along, *place)) {
                 way.along[pane.outside] = place;
-                way.unseen[pane.outside] = false;
+                way.stops[pane.outside] = false;
             }
         }
     }

@@ -168,7 +168,7 @@ impl Family<'_> {
             score: scores[from..to].iter().sum::<f64>() * view.cell,
             bays: self.is_like_bays(&columns[from..to], width),
             is_ragged: false,
-            unseen: [false; 2],
+            stops: [false; 2],
             held: self.held(&columns[from..to]).map(|column| view.along(first + from + column)),
         };
         let long = |(from, to): &(usize, usize)| self.is_long(to - from, across);

@@ -22,7 +22,7 @@ const NARROW: f64 = 0.8;
 /// A section this near to a whole number of pitches is one of empty bays, unless its ends are closed.
 const WHOLE: f64 = 0.1;
 /// What stands so near to a way's side stands at it, metres.
-const SIDE: f64 = 0.35;
+pub const SIDE: f64 = 0.35;
 /// A column of which this share is not free is of what closes a row.
 pub const TAKEN: f64 = 0.5;
 /// No more than this share of a column is not free where nothing closes a row.
@@ -188,8 +188,13 @@ impl<'a> Columns<'a> {
     /// True when the row may end at a way that passes by: that is hardly narrower than a bay, and no upright stands in
     /// it.
     pub fn may_end_at(&self, sides: [f64; 2]) -> bool {
+        self.pitch.is_none_or(|pitch| sides[1] - sides[0] > NARROW * pitch) && !self.stands_between(sides)
+    }
+
+    /// True when an upright or goods stand between two sides, and not at these.
+    pub fn stands_between(&self, sides: [f64; 2]) -> bool {
         let (first, last) = self.inner(sides);
-        self.pitch.is_none_or(|pitch| sides[1] - sides[0] > NARROW * pitch) && !(first..last).any(|n| self.stops[n])
+        (first..last).any(|n| self.stops[n])
     }
 
     /// True when some of the row lies between two sides, but for what stands at these.
@@ -201,7 +206,7 @@ impl<'a> Columns<'a> {
     /// True when nothing stands in the row between two sides that one could not walk round.
     pub fn is_free(&self, sides: [f64; 2]) -> bool {
         let (first, last) = self.inner(sides);
-        first < last && self.share(first, last) <= CLUTTER && !(first..last).any(|n| self.stops[n])
+        first < last && self.share(first, last) <= CLUTTER && !self.stands_between(sides)
     }
 
     /// In how many places of the row, but for what lies between two sides, as much beside one another is free.

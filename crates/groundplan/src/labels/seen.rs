@@ -128,7 +128,7 @@ pub fn way([view, other]: [&Turned; 2], row: &Row, middles: [f64; 2], [from, to]
         score: row.depth(),
         bays: false,
         is_ragged: false,
-        unseen: [false; 2],
+        stops: [false; 2],
         held: UNTOLD,
     }
 }

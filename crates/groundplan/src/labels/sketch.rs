@@ -225,16 +225,11 @@ impl Plan {
             plan = plan.with(views, &cut, least, threads);
         }
         let Gates { ways, as_bays } = gates::find(evidence, look, views, &plan.strips, &plan.rows);
-        let (known, more) = (plan.strips.len(), ways.len() + as_bays.len());
-        plan.strips.extend(ways);
-        let across = plan.strips.clone();
-        plan.strips = widths::alike(evidence, look, views, plan.strips);
-        plan.strips.extend(as_bays);
-        plan.strips = joined::apart(views, plan.strips);
-        let carried = carried::on(evidence, look, views, plan.strips.clone());
-        if more > 0 || plan.strips.len() < known || carried != plan.strips {
-            plan.strips = carried;
-            plan = Self::new(views, plan.strips, threads);
+        let across = [plan.strips.clone(), ways].concat();
+        let alike = [widths::alike(evidence, look, views, across.clone()), as_bays].concat();
+        let carried = carried::on(evidence, look, views, joined::apart(views, alike));
+        if carried != plan.strips {
+            plan = Self::new(views, carried, threads);
         }
         if let Some(more) = heads::with(evidence, look, views, &plan.strips, &plan.rows) {
             plan = Self::new(views, more, threads);

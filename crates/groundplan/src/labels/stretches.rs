@@ -392,7 +392,7 @@ pub fn ragged(view: &Turned, along: [f64; 2], across: [f64; 2], score: f64) -> S
         score,
         bays: false,
         is_ragged: true,
-        unseen: [false; 2],
+        stops: [false; 2],
         held: UNTOLD,
     }
 }

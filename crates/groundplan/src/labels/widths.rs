@@ -92,6 +92,7 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 /// between bars is no bay, wherever it lies.
 pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
+    let mut pieces: Vec<Vec<Strip>> = strips.iter().map(|strip| vec![strip.clone()]).collect();
     let placed = placed(views, strips.iter().map(Strip::place));
     for place in Place::of_each(views, &strips) {
         let Place { views: [view, other], passing, .. } = &place;
@@ -138,6 +139,9 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Str
                 (false, false) => !*is_told_within && view.pitch.is_some() && bars.are_beside(n),
             };
             stays[n] &= !is_some || is_told();
+            if stays[n] && !own.rows.is_empty() {
+                pieces[n] = bars.cut(n);
+            }
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
             let is_beside = |m: usize| {
                 let [low, high] = shared(strips[n].across, strips[m].across);
@@ -148,8 +152,7 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Str
             stays[n] &= !near().any(is_beside);
         }
     }
-    let mut flags = stays.into_iter();
-    strips.into_iter().filter(|_| flags.next().unwrap_or(true)).collect()
+    pieces.into_iter().zip(stays).filter(|(_, stays)| *stays).flat_map(|(pieces, _)| pieces).collect()
 }
 
 /// True when a strip leads past the ends of several rows, up to one that goes on farther beside them: it is as wide as the
