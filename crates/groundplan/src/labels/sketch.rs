@@ -226,7 +226,7 @@ impl Plan {
         }
         let Gates { ways, as_bays } = gates::find(evidence, look, views, &plan.strips, &plan.rows);
         let across = [plan.strips.clone(), ways].concat();
-        let alike = [widths::alike(evidence, look, views, across.clone()), as_bays].concat();
+        let alike = [widths::alike(evidence, look, views, &across), as_bays].concat();
         let carried = carried::on(evidence, look, views, joined::apart(views, alike));
         if carried != plan.strips {
             plan = Self::new(views, carried, threads);

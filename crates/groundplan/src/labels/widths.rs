@@ -90,11 +90,11 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 /// lies as empty bays do is one. What leads past rows' ends up to one that goes on farther is none, but where something leads
 /// through all and it is as wide as bays. Nor those beside which, with no rack between, one leads through more rows. What lies
 /// between bars is no bay, wherever it lies.
-pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
+pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let mut pieces: Vec<Vec<Strip>> = strips.iter().map(|strip| vec![strip.clone()]).collect();
     let placed = placed(views, strips.iter().map(Strip::place));
-    for place in Place::of_each(views, &strips) {
+    for place in Place::of_each(views, strips) {
         let Place { views: [view, other], passing, .. } = &place;
         // What leads through all rows of a part of the place tells of that part.
         let parts = place.parts();
@@ -105,8 +105,8 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Str
                 told[part].1 |= own.is_within;
             }
         }
-        let alone = LazyCell::new(|| Alone::new(&place, &strips));
-        let bars = Bars::new(evidence, look, &place, &strips);
+        let alone = LazyCell::new(|| Alone::new(&place, strips));
+        let bars = Bars::new(evidence, look, &place, strips);
         for (n, own) in passing.iter().enumerate() {
             if own.rows.is_empty() || own.rest > REST {
                 continue;
@@ -125,11 +125,11 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: Vec<Str
                     && (view.pitch.map_or_else(
                         || alone.is_longer_than_bays(own, width) || alone.is_in_every_row(&place, own, width),
                         |pitch| !is_as_bays(width, pitch),
-                    ) || place.is_open_through(&strips, own, width))
+                    ) || place.is_open_through(strips, own, width))
             };
             let may_lie = || view.pitch.is_none() || may_be_bay();
-            let is_as_bays_lie = || may_lie() && alone.is_as_bays_lie(&place, &strips, own, width);
-            let is_empty = || *is_told_within && may_be_bay() && empties::is_empty(&place, &strips, n);
+            let is_as_bays_lie = || may_lie() && alone.is_as_bays_lie(&place, strips, own, width);
+            let is_empty = || *is_told_within && may_be_bay() && empties::is_empty(&place, strips, n);
             let lies_as_bays = || is_as_bays_lie() || is_empty();
             // Where the width tells a way and the place a bay, or neither does, bars tell.
             let is_told = || match (known.have(width, view.pitch) || is_no_bay(), is_bay() || lies_as_bays()) {
