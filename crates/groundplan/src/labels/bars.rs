@@ -134,9 +134,7 @@ impl<'a> Bars<'a> {
     /// beside; where such a row is the next one it stops.
     pub fn cut(&self, n: usize) -> Vec<Strip> {
         let (own, mut strip) = (&self.place.passing[n], self.strips[n].clone());
-        let is_over_bay = |&row: &usize| {
-            self.stands_in(n, row) && self.is_bay(n, &[row]) && self.row(row).columns.stands_between(self.sides(n, row))
-        };
+        let is_over_bay = |&row: &usize| self.passes_by(n, row) && self.is_bay(n, &[row]) && self.stands_in(n, row);
         if !own.is_within || self.place.views[0].pitch.is_none() {
             return vec![strip];
         }
@@ -193,8 +191,13 @@ impl<'a> Bars<'a> {
         sorted(self.strips[n].across.map(|across| view.crossing(other, middle, across)[1]))
     }
 
+    /// True when an upright of a row or goods stand in a strip, and not at its sides.
+    pub fn stands_in(&self, n: usize, row: usize) -> bool {
+        self.row(row).columns.stands_between(self.sides(n, row))
+    }
+
     /// True when something of a row stands in a strip, and one gets past it: for that the row's ends need no look.
-    fn stands_in(&self, n: usize, row: usize) -> bool {
+    fn passes_by(&self, n: usize, row: usize) -> bool {
         let ([view, other], strip) = (self.place.views, &self.strips[n]);
         let (row, [low, high]) = (&self.place.rows[row].0, wider(strip.across, -SIDE));
         let along = sorted(row.across.map(|v| view.crossing(other, v, strip.middle())[0]));

@@ -116,7 +116,8 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             let may_be_bay = || view.pitch.is_some_and(|pitch| is_as_bays(width, pitch));
             let is_as_the_hall_leaves =
                 || leads_past_ends(&place, &strips[n], own) && !(*is_told_within && may_be_bay());
-            let is_some = !own.next.is_empty() && !known.is_empty() && !is_as_the_hall_leaves();
+            let is_past_all = || !own.is_within && !own.next.iter().any(|&row| bars.stands_in(n, row));
+            let is_some = !own.next.is_empty() && !known.is_empty() && !is_as_the_hall_leaves() && !is_past_all();
             // Where the rows beside it go on to the wall, one that does not is empty there.
             let is_bay = || own.rows.len() == 1 && !own.is_led_on && is_at_wall(other, &strips[n]);
             // Ways past the rows' ends are as wide as the hall leaves, and tell nothing of what leads through the rows.
