@@ -167,3 +167,40 @@ def test_ways_lead_past_both_ends_of_a_single_row_though_they_are_as_wide_as_its
     ways = sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C"))
     assert ways == pytest.approx(sorted([gap, 4.0]), abs=0.3)
     assert [label["type"] for label in survey.of_kind("junction")] == ["L"] * 4
+
+
+def racks(seed: int) -> groundplan.Survey:
+    """Rows of racks of bays of 3.3 m on posts, of one or of two back to back, between a way about as wide and a wider one.
+
+    Half or more of the goods are there, and bars across some rows close their ends.
+    """
+    draws, bay, depth, aisle = np.random.default_rng(seed), 66, 44, 56  # pixels of 0.05 m
+    rows, bays = int(draws.integers(3, 6)), int(draws.integers(6, 11))
+    first, last = int(draws.integers(60, 72)), int(draws.integers(74, 100))
+    width, height = first + last + bays * bay, rows * depth + (rows + 1) * aisle
+    picture = np.full((height + 40, width + 40), 205, np.uint8)
+    picture[18 : height + 22, 18 : width + 22] = 0
+    picture[20 : height + 20, 20 : width + 20] = 254
+    full = draws.uniform(0.35, 0.75)
+    for low in (20 + aisle + row * (aisle + depth) for row in range(rows)):
+        is_barred, is_double = draws.random() < 0.6, draws.random() < 0.7
+        for post in range(bays + 1):
+            x = 20 + first + post * bay
+            for face in (0, 19, 23, depth - 2) if is_double else (0, 19):
+                picture[low + face : low + face + 2, x - 1 : x + 1] = 0
+            if is_barred and post in (0, bays):
+                picture[low : low + (depth if is_double else 21), x - 1 : x + 1] = 0
+            if post == bays:
+                continue
+            for rack in (1, 24) if is_double else (1,):
+                for at in (3, 24, 45):
+                    if draws.random() < full:
+                        picture[low + rack : low + rack + 18, x + at : x + at + 18] = 0
+    return groundplan.survey(picture, resolution=0.05)
+
+
+@pytest.mark.parametrize("seed", [64, 131, 188, 214])
+def test_a_way_as_wide_as_bays_past_the_ends_of_some_rows_leads_past_all_that_leave_it_free(seed: int) -> None:
+    survey = racks(seed)
+    types = [junction["type"] for junction in survey.of_kind("junction")]
+    assert types.count("end") == 0 and types.count("L") == 4

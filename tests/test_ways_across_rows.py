@@ -396,18 +396,3 @@ def test_staggered_ways_a_little_wider_than_bays_are_ways(options: dict[str, Any
     simulated = simulate.warehouse(**options, scan_every=0.8, beams=400)
     survey = groundplan.survey(simulated.map)
     assert score(survey.to_dict(), simulated.truth)["junction_typed_f1"] == 1
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"seed": 65219, "yaw": -11.7, "width": 59.58, "depth": 26.1, "aisle": 2.95, "cross_aisle": 3.58},
-        {"seed": 86219, "yaw": 8.2, "width": 56.49, "depth": 28.11, "aisle": 2.86, "cross_aisle": 3.33},
-    ],
-    ids=["60-m", "56-m"],
-)
-def test_a_way_between_bars_through_one_row_of_several_is_no_empty_bay(options: dict[str, Any]) -> None:
-    site = options | {"staggered": 8.0, "cross_aisles": 2, "clutter": 0.8}
-    simulated = simulate.warehouse(**site, scan_every=0.8, beams=400)
-    survey = groundplan.survey(simulated.map)
-    assert score(survey.to_dict(), simulated.truth)["junction_typed_f1"] == 1

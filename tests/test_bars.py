@@ -1,0 +1,82 @@
+"""Bars across the ends of rows stand beside ways and not beside bays: they tell the ones from the others where widths do not."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import groundplan
+from groundplan import simulate
+from groundplan.evaluate import score
+
+
+def typed(seed: int, **options: Any) -> float:
+    """Junctions of a simulated site whose cross aisles are staggered from row to row, as F1 by place and type."""
+    simulated = simulate.warehouse(seed=seed, **options, scan_every=0.8, beams=400)
+    return float(score(groundplan.survey(simulated.map).to_dict(), simulated.truth)["junction_typed_f1"])
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"seed": 65219, "yaw": -11.7, "width": 59.58, "depth": 26.1, "aisle": 2.95, "cross_aisle": 3.58},
+        {"seed": 86219, "yaw": 8.2, "width": 56.49, "depth": 28.11, "aisle": 2.86, "cross_aisle": 3.33},
+    ],
+    ids=["60-m", "56-m"],
+)
+def test_a_way_between_bars_through_one_row_of_several_is_no_empty_bay(options: dict[str, Any]) -> None:
+    assert typed(**options, staggered=8.0, cross_aisles=2, clutter=0.8) == 1
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"seed": 62218, "yaw": 4.1, "width": 52.14, "depth": 33.14, "aisle": 3.26, "cross_aisle": 3.81}
+        | {"staggered": 10.0, "cross_aisles": 1},
+        {"seed": 67219, "yaw": 5.2, "width": 59.87, "depth": 31.32, "aisle": 2.7, "cross_aisle": 3.85}
+        | {"staggered": 8.0, "cross_aisles": 2, "clutter": 0.8},
+    ],
+    ids=["52-m", "60-m"],
+)
+def test_a_bay_between_a_bar_and_goods_is_narrower_than_from_post_to_post_and_no_way(options: dict[str, Any]) -> None:
+    assert typed(**options) == 1
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"seed": 68220, "yaw": 50.9, "width": 57.12, "depth": 32.3, "aisle": 2.74, "cross_aisle": 3.03},
+        {"seed": 83220, "yaw": 85.0, "width": 53.07, "depth": 28.06, "aisle": 3.01, "cross_aisle": 3.06},
+        {"seed": 89220, "yaw": 62.0, "width": 52.68, "depth": 27.38, "aisle": 3.3, "cross_aisle": 3.76},
+    ],
+    ids=["57-m", "53-m", "52-m"],
+)
+def test_a_way_leads_no_further_than_bars_stand_beside_it_where_posts_of_empty_bays_stand_in_it(
+    options: dict[str, Any],
+) -> None:
+    assert typed(**options, skew=-9.0, staggered=9.0, cross_aisles=1, sparse=0.4) == 1
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"seed": 61222, "yaw": 18.2, "width": 53.63, "depth": 36.11, "aisle": 2.6, "cross_aisle": 3.3},
+        {"seed": 63222, "yaw": 14.4, "width": 52.82, "depth": 32.16, "aisle": 2.91, "cross_aisle": 3.75},
+    ],
+    ids=["54-m", "53-m"],
+)
+def test_a_gap_through_one_row_of_several_that_no_number_of_bays_fills_is_a_way(options: dict[str, Any]) -> None:
+    assert typed(**options, uneven=0.5, staggered=9.0, goods=0.6, cross_aisles=2) == 1
+
+
+def test_a_gap_beside_which_no_bar_stands_is_no_way_where_bars_end_all_rows() -> None:
+    site: dict[str, Any] = {
+        "seed": 75219,
+        "yaw": -21.7,
+        "width": 71.58,
+        "depth": 25.73,
+        "aisle": 2.92,
+        "cross_aisle": 3.28,
+    }
+    assert typed(**site, staggered=8.0, cross_aisles=2, clutter=0.8) == 1
