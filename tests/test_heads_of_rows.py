@@ -170,9 +170,9 @@ def test_ways_lead_past_both_ends_of_a_single_row_though_they_are_as_wide_as_its
 
 
 def racks(seed: int) -> groundplan.Survey:
-    """Rows of racks of bays of 3.3 m on posts, of one or of two back to back, between a way about as wide and a wider one.
+    """Rows of one rack or of two back to back, of bays of 3.3 m on posts, between a way about as wide and a wider one.
 
-    Half or more of the goods are there, and bars across some rows close their ends.
+    A third to three quarters of the goods are there, and bars across some rows close their ends.
     """
     draws, bay, depth, aisle = np.random.default_rng(seed), 66, 44, 56  # pixels of 0.05 m
     rows, bays = int(draws.integers(3, 6)), int(draws.integers(6, 11))
