@@ -1,4 +1,4 @@
-"""Bars close the ends of rows beside ways and not beside bays: they tell the ones from the others where widths do not."""
+"""Bars close the ends of rows beside ways and not beside bays: they tell ways from bays where widths do not."""
 
 from __future__ import annotations
 

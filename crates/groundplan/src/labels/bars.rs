@@ -1,5 +1,5 @@
-//! Ways between bars: where bars close the ends of rows, and not those of empty bays, what lies between two of them is a way,
-//! be it as wide as bays and through one row alone.
+//! Bars across the ends of rows: where they stand there, and seldom beside empty bays, what lies between two of them is a way,
+//! be it as wide as bays and through one row alone, and what has none is a bay.
 
 use super::Evidence;
 use super::corridors::Strip;
@@ -12,8 +12,7 @@ use super::sections::{Columns, SIDE};
 use super::turned::Turned;
 use crate::ends::{overlap, sorted, wider};
 use std::cell::OnceCell;
-use std::iter;
-use std::iter::Sum;
+use std::iter::{self, Sum};
 
 /// What is free of a row for so much, metres, has two ends of its own.
 const FREE: f64 = 0.5;
@@ -21,7 +20,9 @@ const FREE: f64 = 0.5;
 const NEAR: f64 = 0.3;
 /// What lies between bars is no narrower than so many bays: posts or goods narrow an empty one.
 const AS_WIDE: f64 = 0.95;
-/// Bars stand beside a way when that is so many times as likely as that they do beside an empty bay.
+/// What shares so much of a way's width is in line with it.
+const IN_LINE: f64 = 0.5;
+/// A way is told from an empty bay by its sides when these are so many times as likely those of the one as those of the other.
 const LIKELIER: f64 = 10.0;
 
 /// Which of some more strips lie between bars.
@@ -79,7 +80,7 @@ impl Sum for Often {
     }
 }
 
-/// How often bars stand at the sides of something, and elsewhere in its part of the place at the rows' ends and beside bays.
+/// How often bars stand at the sides of something, at the rows' ends in its part of the place, and beside bays there.
 struct Told {
     sides: Often,
     ends: Often,
@@ -87,11 +88,12 @@ struct Told {
 }
 
 impl Told {
+    /// They stand there as at rows' ends.
     fn is_way(&self) -> bool {
         self.sides.is_as(self.ends, self.bays)
     }
 
-    /// No bar stands at its sides.
+    /// None stands there, as beside bays.
     fn is_bay(&self) -> bool {
         self.sides.closed == 0 && self.sides.is_as(self.bays, self.ends)
     }
@@ -125,45 +127,60 @@ impl<'a> Bars<'a> {
             && self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_way())
     }
 
-    /// True when bays are known and bars stand at no side of it, as they do not beside bays and do at the rows' ends.
+    /// True when no bar stands at a side of what one of the strips passes through, though bars end the rows and do not stand
+    /// beside their bays, which are known.
     pub fn are_missed(&self, n: usize) -> bool {
         self.is_bay(n, &self.place.passing[n].rows)
     }
 
-    /// One of the strips, in pieces without those of several rows through which it leads over posts of bays that no bars are
-    /// beside; where such a row is the next one it stops.
+    /// True when something of the rows beside one of the strips stands where it would lead through them.
+    pub fn reach_into(&self, n: usize) -> bool {
+        !self.place.passing[n].next.iter().all(|&row| self.row(row).columns.is_bare(self.sides(n, row)))
+    }
+
+    /// One of the strips without the rows in which posts stand between its sides and bars beside it are missed: it is in
+    /// pieces then. Where the next row is such a one it stops.
     pub fn cut(&self, n: usize) -> Vec<Strip> {
         let (own, mut strip) = (&self.place.passing[n], self.strips[n].clone());
-        let is_over_bay = |&row: &usize| self.passes_by(n, row) && self.is_bay(n, &[row]) && self.stands_in(n, row);
         if !own.is_within || self.place.views[0].pitch.is_none() {
             return vec![strip];
         }
-        let missed: Vec<usize> =
-            own.rows.iter().copied().filter(|row| own.rows.len() > 1 && is_over_bay(row)).collect();
-        for row in own.next.iter().copied().filter(is_over_bay) {
+        for row in own.next.iter().copied().filter(|&row| !self.is_led_through(n, row) && self.has_bay(n, row)) {
             strip.stops[usize::from(self.along(n, row)[0] > strip.along[0])] = true;
         }
-        let mut without: Vec<[f64; 2]> = missed.iter().map(|&row| self.along(n, row)).collect();
+        let (bays, ways): (Vec<_>, Vec<_>) = own.rows.iter().copied().partition(|&row| self.has_bay(n, row));
+        if bays.is_empty() || ways.is_empty() {
+            return vec![strip];
+        }
+        let mut without: Vec<[f64; 2]> = bays.iter().map(|&row| self.along(n, row)).collect();
         without.sort_by(|one, two| one[0].total_cmp(&two[0]));
-        let [first, last] = strip.along;
-        let starts = iter::once(first).chain(without.iter().map(|[_, to]| *to));
-        let ends = without.iter().map(|[from, _]| *from).chain(iter::once(last));
-        let piece = |(from, to): (f64, f64)| {
-            let stops = [strip.stops[0] || from != first, strip.stops[1] || to != last];
-            Strip { along: [from, to], stops, ..strip.clone() }
-        };
-        let leads_through = |piece: &Strip| {
-            missed.is_empty() || own.rows.iter().any(|&row| overlap(piece.along, self.along(n, row)) > SHORTEST)
-        };
-        starts.zip(ends).map(piece).filter(leads_through).collect()
+        let leads_through = |along| ways.iter().any(|&row| overlap(along, self.along(n, row)) > SHORTEST);
+        let [mut from, last] = strip.along;
+        let mut pieces = Vec::new();
+        for [to, next] in without.into_iter().chain(iter::once([last; 2])) {
+            if leads_through([from, to]) {
+                let stops = [strip.stops[0] || from != strip.along[0], strip.stops[1] || to != last];
+                pieces.push(Strip { along: [from, to], stops, ..strip.clone() });
+            }
+            from = from.max(next);
+        }
+        pieces
     }
 
-    /// True when bays are known and it is one that some rows have between the sides of a strip, by the bars.
+    /// True when a strip leads over an empty bay of a row, by its posts and by the bars. What costs least is asked first.
+    fn has_bay(&self, n: usize, row: usize) -> bool {
+        self.lies_within(n, row)
+            && self.passes_by(n, row)
+            && self.row(row).columns.posts_between(self.sides(n, row))
+            && self.is_bay(n, &[row])
+    }
+
+    /// True when bays are known, and what some rows have between the sides of a strip is one by the bars.
     fn is_bay(&self, n: usize, rows: &[usize]) -> bool {
         self.place.views[0].pitch.is_some() && self.told(n, rows).is_some_and(|told| told.is_bay())
     }
 
-    /// How often the sides of a strip are closed in some rows, if it passes between rows' ends.
+    /// What bars tell of a strip in some rows, where it passes between rows' ends.
     fn told(&self, n: usize, rows: &[usize]) -> Option<Told> {
         let first = self.place.first_of(&self.place.passing[n]).filter(|_| self.place.passing[n].is_within)?;
         let part: Vec<&Closed> = self.place.rows_with(first).into_iter().map(|row| self.row(row)).collect();
@@ -191,12 +208,21 @@ impl<'a> Bars<'a> {
         sorted(self.strips[n].across.map(|across| view.crossing(other, middle, across)[1]))
     }
 
-    /// True when an upright of a row or goods stand in a strip, and not at its sides.
-    pub fn stands_in(&self, n: usize, row: usize) -> bool {
-        self.row(row).columns.stands_between(self.sides(n, row))
+    /// True when another leads through a row in line with a strip.
+    fn is_led_through(&self, n: usize, row: usize) -> bool {
+        let own = &self.strips[n];
+        self.place.through[row]
+            .iter()
+            .any(|&m| m != n && overlap(self.strips[m].across, own.across) > IN_LINE * own.width())
     }
 
-    /// True when something of a row stands in a strip, and one gets past it: for that the row's ends need no look.
+    /// True when a strip lies between the ends of a row.
+    fn lies_within(&self, n: usize, row: usize) -> bool {
+        let ([from, to], [low, high]) = (self.place.rows[row].0.along, self.sides(n, row));
+        from < low && high < to
+    }
+
+    /// True when something of a row stands in a strip, and one gets past it.
     fn passes_by(&self, n: usize, row: usize) -> bool {
         let ([view, other], strip) = (self.place.views, &self.strips[n]);
         let (row, [low, high]) = (&self.place.rows[row].0, wider(strip.across, -SIDE));

@@ -166,8 +166,8 @@ pub fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meet
         let sides = [strip.across[0] + SIDE, strip.across[1] - SIDE];
         let blocked = view.some_blocked(columns.clone(), sides[0], sides[1]);
         // Where it stops it leads to the first way only, as does what something stands in.
-        let goes_on_there = !strip.stops[usize::from(u > strip.along[1])];
-        legs[n].is_clear = from == to || goes_on_there && blocked.into_iter().all(|blocked| blocked <= CLUTTER);
+        let leads_on = !strip.stops[usize::from(u > strip.along[1])];
+        legs[n].is_clear = from == to || leads_on && blocked.into_iter().all(|blocked| blocked <= CLUTTER);
         let has_door = barriers::across(view, strip.across, columns.clone()).any();
         if has_door || !barriers::stops(view, strip.across, columns).is_empty() {
             return None;

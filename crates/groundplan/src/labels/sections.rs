@@ -29,6 +29,10 @@ pub const TAKEN: f64 = 0.5;
 pub const LEFT: f64 = 0.25;
 /// A way is free but for this share, metre for metre: one walks round what was left in it.
 const CLUTTER: f64 = 0.2;
+/// Posts are no longer along a row, metres.
+const POST: f64 = 0.6;
+/// Of a row from which nothing reaches into a way so much is not free there.
+const BARE: f64 = 0.05;
 /// A way between posts, and not between frames, is free but for this share of its columns.
 const FREE: f64 = 0.12;
 /// A rack that is drawn by its outline stands on both its faces over so much of its length at least: not all of them may have
@@ -195,6 +199,22 @@ impl<'a> Columns<'a> {
     pub fn stands_between(&self, sides: [f64; 2]) -> bool {
         let (first, last) = self.inner(sides);
         (first..last).any(|n| self.stops[n])
+    }
+
+    /// True when posts stand between two sides on both faces, with next to nothing beside them: goods are longer.
+    pub fn posts_between(&self, sides: [f64; 2]) -> bool {
+        let (first, last) = self.inner(sides);
+        let is_post = |(from, to): (usize, usize)| {
+            let stands = |face: usize| self.faces[first + from..first + to].iter().any(|faces| faces[face]);
+            (to - from) as f64 * self.view.cell <= POST && stands(0) && stands(1)
+        };
+        first < last && runs(&self.stops[first..last], true).into_iter().any(is_post)
+    }
+
+    /// True when next to nothing of the row is not free between two sides, but for what stands at these.
+    pub fn is_bare(&self, sides: [f64; 2]) -> bool {
+        let (first, last) = self.inner(sides);
+        first >= last || self.share(first, last) <= BARE && !self.stands_between(sides)
     }
 
     /// True when some of the row lies between two sides, but for what stands at these.

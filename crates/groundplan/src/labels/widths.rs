@@ -10,6 +10,7 @@ use super::look::Look;
 use super::passing::{Passing, Place};
 use super::rows::SHORTEST;
 use super::sections::is_as_bays;
+use super::seldom;
 use super::turned::Turned;
 use crate::ends::{shared, sorted, wider};
 use std::cell::LazyCell;
@@ -113,11 +114,12 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             }
             let (known, is_told_within) = &told[parts[place.first_of(own).unwrap_or(own.rows[0])]];
             let width = strips[n].width();
+            let is_double = |&row: &usize| seldom::is_double(&place.rows[row].0);
             let may_be_bay = || view.pitch.is_some_and(|pitch| is_as_bays(width, pitch));
             let is_as_the_hall_leaves =
                 || leads_past_ends(&place, &strips[n], own) && !(*is_told_within && may_be_bay());
-            let is_past_all = || !own.is_within && !own.next.iter().any(|&row| bars.stands_in(n, row));
-            let is_some = !own.next.is_empty() && !known.is_empty() && !is_as_the_hall_leaves() && !is_past_all();
+            let is_past_ends = || own.rows.len() > 1 && !own.is_within && !bars.reach_into(n);
+            let is_some = !own.next.is_empty() && !known.is_empty() && !is_as_the_hall_leaves() && !is_past_ends();
             // Where the rows beside it go on to the wall, one that does not is empty there.
             let is_bay = || own.rows.len() == 1 && !own.is_led_on && is_at_wall(other, &strips[n]);
             // Ways past the rows' ends are as wide as the hall leaves, and tell nothing of what leads through the rows.
@@ -132,15 +134,18 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             let is_as_bays_lie = || may_lie() && alone.is_as_bays_lie(&place, strips, own, width);
             let is_empty = || *is_told_within && may_be_bay() && empties::is_empty(&place, strips, n);
             let lies_as_bays = || is_as_bays_lie() || is_empty();
-            // Where the width tells a way and the place a bay, or neither does, bars tell.
+            // Where width and place disagree, or neither tells, bars do; and where these are missed it is none.
             let is_told = || match (known.have(width, view.pitch) || is_no_bay(), is_bay() || lies_as_bays()) {
                 (true, false) => !bars.are_missed(n),
                 (false, true) => false,
                 (true, true) => bars.are_beside(n),
-                (false, false) => !*is_told_within && view.pitch.is_some() && bars.are_beside(n),
+                // What fills a rack's depth is as a bar, but of two racks back to back goods seldom line up so.
+                (false, false) => {
+                    !*is_told_within && view.pitch.is_some() && own.rows.iter().all(is_double) && bars.are_beside(n)
+                }
             };
             stays[n] &= !is_some || is_told();
-            if stays[n] && !own.rows.is_empty() {
+            if stays[n] {
                 pieces[n] = bars.cut(n);
             }
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
