@@ -50,7 +50,7 @@ def test_a_bay_between_a_bar_and_goods_is_narrower_than_from_post_to_post_and_no
         {"seed": 83220, "yaw": 85.0, "width": 53.07, "depth": 28.06, "aisle": 3.01, "cross_aisle": 3.06},
         {"seed": 89220, "yaw": 62.0, "width": 52.68, "depth": 27.38, "aisle": 3.3, "cross_aisle": 3.76},
     ],
-    ids=["57-m", "53-m", "52-m"],
+    ids=["57-m", "53-m", "52-m-wide-way"],
 )
 def test_a_way_leads_no_further_than_bars_stand_beside_it_where_posts_of_empty_bays_stand_in_it(
     options: dict[str, Any],

@@ -204,3 +204,25 @@ def test_a_way_as_wide_as_bays_past_the_ends_of_some_rows_leads_past_all_that_le
     survey = racks(seed)
     types = [junction["type"] for junction in survey.of_kind("junction")]
     assert types.count("end") == 0 and types.count("L") == 4
+
+
+@pytest.mark.parametrize("full", [1, 2])
+def test_no_way_leads_along_a_wall_over_last_bays_of_which_one_rack_of_two_is_full(full: int) -> None:
+    # Four rows of nine bays of 2.7 m on posts, the last of them at the wall, and of these all are empty but that one.
+    draws, bay, depth, aisle, first = np.random.default_rng(full), 54, 44, 60, 80  # pixels of 0.05 m
+    width, height = first + 9 * bay, 4 * depth + 5 * aisle
+    picture = np.full((height + 40, width + 40), 205, np.uint8)
+    picture[18 : height + 22, 18 : width + 22] = 0
+    picture[20 : height + 20, 20 : width + 20] = 254
+    for row in range(4):
+        low = 20 + aisle + row * (aisle + depth)
+        for post in range(10):
+            x = 20 + first + post * bay
+            for face in (0, 19, 23, depth - 2):
+                picture[low + face : low + face + 2, x - 1 : x + 1] = 0
+            for rack in (0, 1):
+                is_full = draws.random() < 0.8 if post < 8 else post == 8 and (row, rack) == (full, 0)
+                if is_full:
+                    picture[low + 1 + 23 * rack : low + 19 + 23 * rack, x + 3 : x + 51] = 0
+    survey = groundplan.survey(picture, resolution=0.05)
+    assert sum(junction["type"] == "end" for junction in survey.of_kind("junction")) == 5
