@@ -7,12 +7,10 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from zoo import Picture, walled
 
 import groundplan
-
-Picture = npt.NDArray[np.uint8]
 
 RESOLUTION = 0.05
 AISLE, END = 64, 84  # pixels: 3.2 m between rows, 4.2 m before their heads
@@ -20,9 +18,7 @@ AISLE, END = 64, 84  # pixels: 3.2 m between rows, 4.2 m before their heads
 
 def hall(rows: int, depth: int, length: int) -> tuple[Picture, list[Picture]]:
     """A hall of rows without a gap, so many pixels deep and long, and each row's part of the picture."""
-    picture = np.full((40 + rows * depth + (rows + 1) * AISLE, 40 + 2 * END + length), 205, np.uint8)
-    picture[18:-18, 18:-18] = 0
-    picture[20:-20, 20:-20] = 254
+    picture = walled(2 * END + length, rows * depth + (rows + 1) * AISLE)
     lows = [20 + AISLE + n * (AISLE + depth) for n in range(rows)]
     parts = [picture[low : low + depth, 20 + END : 20 + END + length] for low in lows]
     for part in parts:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from zoo import Picture, walled
 
 import groundplan
-
-Picture = npt.NDArray[np.uint8]
 
 RESOLUTION = 0.05
 AISLE, DEPTH, CROSS, BLOCK = 60, 30, 72, 180  # pixels: aisles of 3 m, rows of 1.5 m by 9 m, ways of 3.6 m across them
@@ -21,9 +19,7 @@ def hall(blocks: int, slope: float) -> Picture:
     """
     width = blocks * BLOCK + (blocks + 1) * CROSS
     depth = 3 * AISLE + 2 * DEPTH
-    picture = np.full((depth + 40, width + 40), 205, np.uint8)
-    picture[18 : depth + 22, 18 : width + 22] = 0
-    picture[20 : depth + 20, 20 : width + 20] = 254
+    picture = walled(width, depth)
     lefts = [20 + CROSS + n * (BLOCK + CROSS) for n in range(blocks)]
     back = 20 + 2 * AISLE + 2 * DEPTH
     for left in lefts:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from zoo import Picture, walled
 
 import groundplan
 from groundplan import simulate
@@ -112,9 +113,7 @@ def test_no_way_leads_past_rows_at_a_wall_of_which_two_have_their_last_bays_empt
     """Three rows of five bays stand against the east wall, the first full up to there; posts stand between bays."""
     cell = 0.05
     bay_px, aisle, depth = round(bay / cell), 60, 20
-    picture = np.full((3 * depth + 4 * aisle + 40, aisle + 5 * bay_px + 40), 205, np.uint8)
-    picture[18:-18, 18:-18] = 0
-    picture[20:-20, 20:-20] = 254
+    picture = walled(aisle + 5 * bay_px, 3 * depth + 4 * aisle)
     for row in range(3):
         low = 20 + aisle + row * (aisle + depth)
         for n in range(6):
@@ -169,6 +168,12 @@ def test_ways_lead_past_both_ends_of_a_single_row_though_they_are_as_wide_as_its
     assert [label["type"] for label in survey.of_kind("junction")] == ["L"] * 4
 
 
+def put_posts(picture: Picture, low: int, x: int, faces: tuple[int, ...]) -> None:
+    """Posts two pixels thick about a column, at each of a row's faces."""
+    for face in faces:
+        picture[low + face : low + face + 2, x - 1 : x + 1] = 0
+
+
 def racks(seed: int) -> groundplan.Survey:
     """Rows of one rack or of two back to back, of bays of 3.3 m on posts, between a way about as wide and a wider one.
 
@@ -177,17 +182,13 @@ def racks(seed: int) -> groundplan.Survey:
     draws, bay, depth, aisle = np.random.default_rng(seed), 66, 44, 56  # pixels of 0.05 m
     rows, bays = int(draws.integers(3, 6)), int(draws.integers(6, 11))
     first, last = int(draws.integers(60, 72)), int(draws.integers(74, 100))
-    width, height = first + last + bays * bay, rows * depth + (rows + 1) * aisle
-    picture = np.full((height + 40, width + 40), 205, np.uint8)
-    picture[18 : height + 22, 18 : width + 22] = 0
-    picture[20 : height + 20, 20 : width + 20] = 254
+    picture = walled(first + last + bays * bay, rows * depth + (rows + 1) * aisle)
     full = draws.uniform(0.35, 0.75)
     for low in (20 + aisle + row * (aisle + depth) for row in range(rows)):
         is_barred, is_double = draws.random() < 0.6, draws.random() < 0.7
         for post in range(bays + 1):
             x = 20 + first + post * bay
-            for face in (0, 19, 23, depth - 2) if is_double else (0, 19):
-                picture[low + face : low + face + 2, x - 1 : x + 1] = 0
+            put_posts(picture, low, x, (0, 19, 23, depth - 2) if is_double else (0, 19))
             if is_barred and post in (0, bays):
                 picture[low : low + (depth if is_double else 21), x - 1 : x + 1] = 0
             if post == bays:
@@ -210,16 +211,12 @@ def test_a_way_as_wide_as_bays_past_the_ends_of_some_rows_leads_past_all_that_le
 def test_no_way_leads_along_a_wall_over_last_bays_of_which_one_rack_of_two_is_full(full: int) -> None:
     # Four rows of nine bays of 2.7 m on posts, the last of them at the wall, and of these all are empty but that one.
     draws, bay, depth, aisle, first = np.random.default_rng(full), 54, 44, 60, 80  # pixels of 0.05 m
-    width, height = first + 9 * bay, 4 * depth + 5 * aisle
-    picture = np.full((height + 40, width + 40), 205, np.uint8)
-    picture[18 : height + 22, 18 : width + 22] = 0
-    picture[20 : height + 20, 20 : width + 20] = 254
+    picture = walled(first + 9 * bay, 4 * depth + 5 * aisle)
     for row in range(4):
         low = 20 + aisle + row * (aisle + depth)
         for post in range(10):
             x = 20 + first + post * bay
-            for face in (0, 19, 23, depth - 2):
-                picture[low + face : low + face + 2, x - 1 : x + 1] = 0
+            put_posts(picture, low, x, (0, 19, 23, depth - 2))
             for rack in (0, 1):
                 is_full = draws.random() < 0.8 if post < 8 else post == 8 and (row, rack) == (full, 0)
                 if is_full:

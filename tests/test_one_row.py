@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from zoo import Picture, walled
 
 import groundplan
 
-Picture = npt.NDArray[np.uint8]
 Boxes = list[tuple[float, float, float, float]]  # from x, from y, to x, to y
 
 RESOLUTION = 0.05
@@ -16,16 +15,10 @@ RESOLUTION = 0.05
 
 def hall(width: float, depth: float, racks: Boxes) -> Picture:
     """A closed hall, metres, with what stands in it; the unknown around."""
-    picture = np.full((round(depth / RESOLUTION) + 40, round(width / RESOLUTION) + 40), 205, np.uint8)
-
-    def fill(box: tuple[float, float, float, float], grey: int) -> None:
-        left, low, right, high = (round(metres / RESOLUTION) + 20 for metres in box)
-        picture[low:high, left:right] = grey
-
-    fill((-0.1, -0.1, width + 0.1, depth + 0.1), 0)
-    fill((0, 0, width, depth), 254)
+    picture = walled(round(width / RESOLUTION), round(depth / RESOLUTION))
     for box in racks:
-        fill(box, 0)
+        left, low, right, high = (round(metres / RESOLUTION) + 20 for metres in box)
+        picture[low:high, left:right] = 0
     return picture
 
 
@@ -93,9 +86,7 @@ def test_a_pillar_behind_a_rack_is_not_of_it() -> None:
 @pytest.mark.parametrize("depth", [4, 7, 8, 12])
 def test_rows_of_a_coarse_map_are_free_where_nothing_stands_in_them(depth: int) -> None:
     # At 0.1 m a pixel what is asked of a row's columns is as high as a pixel.
-    picture = np.full((4 * 32 + 3 * depth + 40, 290), 205, np.uint8)
-    picture[18:-18, 18:272] = 0
-    picture[20:-20, 20:270] = 254
+    picture = walled(250, 4 * 32 + 3 * depth)
     for n in range(3):
         low = 20 + 32 + n * (32 + depth)
         picture[low : low + depth, 44:246] = 0

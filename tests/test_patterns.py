@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from zoo import walled
 
 import groundplan
 from groundplan import Survey, simulate
@@ -70,9 +71,7 @@ def test_the_pitch_of_racks_is_a_bay_and_not_a_pallet(seed: int) -> None:
     # Five single racks of twelve bays of 3.5 m, a third empty; three pallets as far apart in the others.
     draws = np.random.default_rng(seed)
     bay, count = 70, 12
-    picture = np.full((470, 1030), 205, np.uint8)
-    picture[18:-18, 18:-18] = 0
-    picture[20:-20, 20:-20] = 254
+    picture = walled(990, 430)
     for low in range(80, 400, 74):
         row = picture[low : low + 18, 100 : 100 + count * bay]
         for start in range(0, count * bay, bay):
@@ -91,9 +90,7 @@ def test_the_pitch_of_shelves_is_one_shelf_though_it_is_no_longer_than_a_pallet(
     # Three rows of 13 shelves of 1 to 1.4 m, one in five of them empty.
     draws = np.random.default_rng(0)
     depth, gap, count = 12, 60, 13
-    picture = np.full((3 * depth + 4 * gap + 40, count * shelf + 2 * gap + 40), 205, np.uint8)
-    picture[18:-18, 18:-18] = 0
-    picture[20:-20, 20:-20] = 254
+    picture = walled(count * shelf + 2 * gap, 3 * depth + 4 * gap)
     for low in range(20 + gap, 20 + 3 * (depth + gap), depth + gap):
         row = picture[low : low + depth, 20 + gap :]
         for post in range(0, (count + 1) * shelf, shelf):

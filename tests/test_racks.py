@@ -6,22 +6,17 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from zoo import Picture, walled
 
 import groundplan
 from groundplan import simulate
 from groundplan.evaluate import score
 
-Picture = npt.NDArray[np.uint8]
-
 
 def hall(width: float = 30.0, depth: float = 40.0) -> Picture:
     """A hall with nothing in it, 20 pixels a metre, a metre of unknown round it."""
-    picture = np.full((int(20 * depth) + 40, int(20 * width) + 40), 205, np.uint8)
-    picture[18:-18, 18:-18] = 0
-    picture[20:-20, 20:-20] = 254
-    return picture
+    return walled(int(20 * width), int(20 * depth))
 
 
 def put(picture: Picture, x: float, y: float, width: float, depth: float, inside: int = 205) -> None:

@@ -6,26 +6,16 @@ import itertools
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from zoo import Picture, walled
 
 import groundplan
 from groundplan import simulate
 from groundplan.evaluate import score
 
-Picture = npt.NDArray[np.uint8]
-
 RESOLUTION = 0.05
 AISLE, DEPTH = 56, 20  # pixels: 2.8 m between rows, two racks of 1 m back to back
 BAY, BAYS = 42, 6
-
-
-def hall(width: int, depth: int) -> Picture:
-    """Free space of so many pixels within walls of 0.1 m."""
-    picture = np.full((depth + 40, width + 40), 205, np.uint8)
-    picture[18 : depth + 22, 18 : width + 22] = 0
-    picture[20 : depth + 20, 20 : width + 20] = 254
-    return picture
 
 
 def racks_of_legs(seed: int) -> Picture:
@@ -65,7 +55,7 @@ def legs(
     """
     draws = np.random.default_rng(seed)
     lefts = [20 + end + bay * sum(blocks[:n]) + way * n for n in range(len(blocks))]
-    picture = hall(2 * end + bay * sum(blocks) + way * (len(blocks) - 1), (rows + 1) * aisle + 2 * rows * depth)
+    picture = walled(2 * end + bay * sum(blocks) + way * (len(blocks) - 1), (rows + 1) * aisle + 2 * rows * depth)
     for number, row in enumerate(20 + aisle + n * (aisle + 2 * depth) for n in range(rows)):
         for left, bays in zip(lefts, blocks, strict=True):
             for rack in (row, row + depth):
@@ -80,7 +70,7 @@ def legs(
 def shelves(empty: list[tuple[int, int]], rows: int = 3) -> Picture:
     """A hall with rows of six shelves of 2.6 m between ways of 3.6 m; of the rows given shelves are empty."""
     bay, end = 52, 72
-    picture = hall(2 * end + 6 * bay, (rows + 1) * AISLE + 2 * rows * DEPTH)
+    picture = walled(2 * end + 6 * bay, (rows + 1) * AISLE + 2 * rows * DEPTH)
     for row in range(rows):
         low = 20 + AISLE + row * (AISLE + 2 * DEPTH)
         picture[low : low + 2 * DEPTH, 20 + end : 20 + end + 6 * bay] = 0
@@ -187,7 +177,7 @@ def test_a_gap_longer_than_beams_are_is_no_empty_bay() -> None:
 @pytest.mark.parametrize("at", [4.0, 9.0, 15.6])
 def test_a_gap_as_wide_as_a_pallet_is_no_way_between_aisles_for_trucks(at: float) -> None:
     # One row of 24 m by 2.4 m with aisles of 3 m on both sides, 3 m from the walls at its ends.
-    picture = hall(600, 168)
+    picture = walled(600, 168)
     picture[80:128, 80:560] = 0
     left = 80 + round(at / RESOLUTION)
     picture[80:128, left : left + 24] = 254
@@ -198,7 +188,7 @@ def test_a_gap_as_wide_as_a_pallet_is_no_way_between_aisles_for_trucks(at: float
 
 def test_aisles_as_narrow_lead_between_racks_side_by_side() -> None:
     # Racks of 2.4 m by 8 m, 1.2 m apart, with ways of 3 m before their ends and of 2.4 m at the walls beside them.
-    picture = hall(720, 280)
+    picture = walled(720, 280)
     for n in range(9):
         picture[80:240, 20 + 48 + n * 72 : 20 + 96 + n * 72] = 0
     survey = groundplan.survey(picture, resolution=RESOLUTION)
@@ -209,7 +199,7 @@ def test_aisles_as_narrow_lead_between_racks_side_by_side() -> None:
 def test_ways_staggered_from_row_to_row_need_not_be_as_wide_as_those_at_the_walls() -> None:
     # Four rows of 16 bays of 3 m between posts, with goods in all of them, and in each row a way of 3.8 m at a place of
     # its own; ways of 5 m and 6.2 m at the walls.
-    picture = hall(1260, 4 * 46 + 5 * 60)
+    picture = walled(1260, 4 * 46 + 5 * 60)
     for row, bays in enumerate((4, 11, 6, 13)):
         low = 20 + 60 + row * 106
         for start, count in ((0, bays), (60 * bays + 76, 16 - bays)):
@@ -231,7 +221,7 @@ def test_a_way_staggered_as_others_are_is_known_though_one_of_two_racks_at_its_s
     # Three rows of two racks of 1 m back to back, 28 m long, and in each a way of 3.2 m at a place of its own. Shelves
     # of 2.6 m are empty here and there, one of them at a side of one of the ways.
     empty = [(0, 0, 120), (1, 1, 460), (2, 0, 480)]
-    picture = hall(560 + 144, 3 * 2 * DEPTH + 4 * AISLE)
+    picture = walled(560 + 144, 3 * 2 * DEPTH + 4 * AISLE)
     for n, way in enumerate((380, 180, 300)):
         low = 20 + AISLE + n * (AISLE + 2 * DEPTH)
         picture[low : low + 2 * DEPTH, 20 + 72 : 20 + 72 + 560] = 0
@@ -247,7 +237,7 @@ def test_a_way_staggered_as_others_are_is_known_though_one_of_two_racks_at_its_s
 
 def test_one_way_in_each_row_at_a_place_of_its_own_is_narrower_than_those_at_the_walls() -> None:
     # Five rows of 1.4 m by 30 m, a way of 1.8 m through each, and ways of 3.2 m past their ends.
-    picture = hall(600 + 128, 5 * 28 + 6 * 44)
+    picture = walled(600 + 128, 5 * 28 + 6 * 44)
     for row, way in enumerate((120, 400, 260, 500, 180)):
         low = 20 + 44 + row * 72
         picture[low : low + 28, 84 : 84 + 600] = 0
@@ -260,7 +250,7 @@ def test_one_way_in_each_row_at_a_place_of_its_own_is_narrower_than_those_at_the
 @pytest.mark.parametrize("ways", [(380, 380, 250, 120), (100, 330, 330, 200), (420, 180, 300, 90)])
 def test_a_gap_in_each_row_is_a_way_where_hardly_a_shelf_is_empty(ways: tuple[int, ...]) -> None:
     # Four rows of 1.15 m by 28 m that begin at a wall, a gap of 2.1 m in each; a way of 4.1 m past their ends.
-    picture = hall(560 + 82, 4 * 23 + 5 * 46)
+    picture = walled(560 + 82, 4 * 23 + 5 * 46)
     for row, way in enumerate(ways):
         low = 20 + 46 + row * 69
         picture[low : low + 23, 20 : 20 + 560] = 0
@@ -274,7 +264,7 @@ def test_a_gap_in_each_row_is_a_way_where_hardly_a_shelf_is_empty(ways: tuple[in
 def rows_on_posts(seed: int, ways: tuple[int, ...], gap: int) -> Picture:
     """Rows of 14 bays of 3 m between posts, the goods of three in ten missing, each with a gap after so many bays."""
     draws = np.random.default_rng(seed)
-    picture = hall(840 + gap + 180, len(ways) * 40 + (len(ways) + 1) * AISLE)
+    picture = walled(840 + gap + 180, len(ways) * 40 + (len(ways) + 1) * AISLE)
     for row, bays in enumerate(ways):
         low = 20 + AISLE + row * (AISLE + 40)
         for start, count in ((0, bays), (60 * bays + gap, 14 - bays)):
@@ -310,7 +300,7 @@ def pallets(ends: tuple[int, int], count: int, taken: list[set[int]], off: int =
     Of each row goods stand in the bays given, two pallets in each; posts of every other row stand so many pixels off.
     """
     bay, depth = 54, 22
-    picture = hall(sum(ends) + count * bay, len(taken) * (AISLE + depth) + AISLE)
+    picture = walled(sum(ends) + count * bay, len(taken) * (AISLE + depth) + AISLE)
     for row, bays in enumerate(taken):
         low = 20 + AISLE + row * (AISLE + depth)
         for post in range(count + 1):
@@ -338,7 +328,7 @@ def test_a_way_through_rows_leads_on_through_the_next_where_the_bays_beside_it_a
     # Of the last row the bays beside that way are empty, and its posts stand about as far apart as all others.
     bay, depth, way, end = 54, 22, 50, 60
     draws = np.random.default_rng(seed)
-    picture = hall(2 * end + 2 * count * bay + way, rows * (AISLE + 2 * depth + 3) + AISLE)
+    picture = walled(2 * end + 2 * count * bay + way, rows * (AISLE + 2 * depth + 3) + AISLE)
     for rack in range(2 * rows):
         low = 20 + AISLE + rack // 2 * (AISLE + 2 * depth + 3) + rack % 2 * (depth + 3)
         taken = set(np.flatnonzero(draws.random(2 * count) < fill).tolist())
@@ -364,7 +354,7 @@ def test_an_empty_last_bay_beside_a_way_is_none(empty: tuple[int, ...], bay: int
     # A way of 3.2 m through four rows, and 0.1 m of guard between it and what is as wide in one row or two.
     left, way, right = 20 + 80, 64, 420
     middle = left + 240
-    picture = hall(160 + 240 + way + right, 4 * (60 + deep) + 60)
+    picture = walled(160 + 240 + way + right, 4 * (60 + deep) + 60)
     for n in range(4):
         row = picture[80 + n * (60 + deep) :][:deep]
         row[:, left:middle] = 0

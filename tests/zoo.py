@@ -64,6 +64,14 @@ class Canvas:
         return np.ascontiguousarray(self.rows[::-1])
 
 
+def walled(width: int, depth: int) -> Picture:
+    """Free space of so many pixels within walls two pixels thick, 18 of the unknown around."""
+    picture = np.full((depth + 40, width + 40), UNKNOWN, np.uint8)
+    picture[18:-18, 18:-18] = OCCUPIED
+    picture[20:-20, 20:-20] = FREE
+    return picture
+
+
 def empty() -> Picture:
     """Free space and nothing else."""
     return Canvas(80, 60, FREE).picture

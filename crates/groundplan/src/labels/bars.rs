@@ -4,13 +4,13 @@
 use super::Evidence;
 use super::corridors::Strip;
 use super::gates::walled;
+use super::lead::Lead;
 use super::look::Look;
 use super::meeting::CLUTTER;
 use super::passing::Place;
 use super::rows::SHORTEST;
 use super::sections::{Columns, SIDE};
-use super::turned::Turned;
-use crate::ends::{overlap, sorted, wider};
+use crate::ends::{overlap, wider};
 use std::cell::OnceCell;
 use std::iter::{self, Sum};
 
@@ -25,17 +25,10 @@ const IN_LINE: f64 = 0.5;
 /// A way is told from an empty bay by its sides when these are so many times as likely those of the one as those of the other.
 const LIKELIER: f64 = 10.0;
 
-/// Which of some more strips lie between bars.
-pub fn are_between(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], more: &[Strip]) -> Vec<bool> {
-    let all = [strips, more].concat();
-    let mut between = vec![false; more.len()];
-    for place in Place::of_each(views, &all) {
-        let bars = Bars::new(evidence, look, &place, &all);
-        for (n, is_between) in between.iter_mut().enumerate() {
-            *is_between |= bars.are_beside(strips.len() + n);
-        }
-    }
-    between
+/// Which of some strips lie between bars, from one on; of all the places are known that they lead through.
+pub fn are_between(evidence: &Evidence, look: &Look, places: &[Place], strips: &[Strip], first: usize) -> Vec<bool> {
+    let bars: Vec<Bars> = places.iter().map(|place| Bars::new(evidence, look, place, strips)).collect();
+    (first..strips.len()).map(|n| bars.iter().any(|bars| bars.are_beside(n))).collect()
 }
 
 /// How often something is closed.
@@ -139,18 +132,19 @@ impl<'a> Bars<'a> {
     }
 
     /// One of the strips without the rows in which posts stand between its sides and bars beside it are missed: it is in
-    /// pieces then. Where the next row is such a one it stops.
-    pub fn cut(&self, n: usize) -> Vec<Strip> {
-        let (own, mut strip) = (&self.place.passing[n], self.strips[n].clone());
+    /// pieces then, and where the next row is such a one it stops. Nothing where it stays as it is.
+    pub fn cut(&self, n: usize) -> Option<Vec<Strip>> {
+        let (own, strip) = (&self.place.passing[n], &self.strips[n]);
         if !own.is_within || self.place.views[0].pitch.is_none() {
-            return vec![strip];
+            return None;
         }
+        let mut ends = strip.stops;
         for row in own.next.iter().copied().filter(|&row| !self.is_led_through(n, row) && self.has_bay(n, row)) {
-            strip.stops[usize::from(self.along(n, row)[0] > strip.along[0])] = true;
+            ends[usize::from(self.along(n, row)[0] > strip.along[0])] = true;
         }
         let (bays, ways): (Vec<_>, Vec<_>) = own.rows.iter().copied().partition(|&row| self.has_bay(n, row));
         if bays.is_empty() || ways.is_empty() {
-            return vec![strip];
+            return (ends != strip.stops).then(|| vec![Strip { stops: ends, ..strip.clone() }]);
         }
         let mut without: Vec<[f64; 2]> = bays.iter().map(|&row| self.along(n, row)).collect();
         without.sort_by(|one, two| one[0].total_cmp(&two[0]));
@@ -159,17 +153,17 @@ impl<'a> Bars<'a> {
         let mut pieces = Vec::new();
         for [to, next] in without.into_iter().chain(iter::once([last; 2])) {
             if leads_through([from, to]) {
-                let stops = [strip.stops[0] || from != strip.along[0], strip.stops[1] || to != last];
+                let stops = [ends[0] || from != strip.along[0], ends[1] || to != last];
                 pieces.push(Strip { along: [from, to], stops, ..strip.clone() });
             }
             from = from.max(next);
         }
-        pieces
+        Some(pieces)
     }
 
     /// True when a strip leads over an empty bay of a row, by its posts and by the bars. What costs least is asked first.
     fn has_bay(&self, n: usize, row: usize) -> bool {
-        self.lies_within(n, row)
+        self.lead(n, row).is_within()
             && self.passes_by(n, row)
             && self.row(row).columns.posts_between(self.sides(n, row))
             && self.is_bay(n, &[row])
@@ -194,18 +188,20 @@ impl<'a> Bars<'a> {
         })
     }
 
+    /// A strip across a row.
+    fn lead(&self, n: usize, row: usize) -> Lead<'a> {
+        Lead { views: self.place.views, row: &self.place.rows[row].0, strip: &self.strips[n] }
+    }
+
     /// From the middle of the aisle on a row's one side to that on the other, along a strip.
     fn along(&self, n: usize, row: usize) -> [f64; 2] {
-        let [view, other] = self.place.views;
         let middle = |aisle: usize| self.strips[self.place.aisles[aisle]].middle();
-        sorted(self.place.rows[row].1.map(|aisle| view.crossing(other, middle(aisle), self.strips[n].middle())[0]))
+        self.lead(n, row).along(self.place.rows[row].1.map(middle))
     }
 
     /// From where to where along a row a strip lies.
     fn sides(&self, n: usize, row: usize) -> [f64; 2] {
-        let ([view, other], row) = (self.place.views, &self.place.rows[row].0);
-        let middle = f64::midpoint(row.across[0], row.across[1]);
-        sorted(self.strips[n].across.map(|across| view.crossing(other, middle, across)[1]))
+        self.lead(n, row).sides()
     }
 
     /// True when another leads through a row in line with a strip.
@@ -216,17 +212,10 @@ impl<'a> Bars<'a> {
             .any(|&m| m != n && overlap(self.strips[m].across, own.across) > IN_LINE * own.width())
     }
 
-    /// True when a strip lies between the ends of a row.
-    fn lies_within(&self, n: usize, row: usize) -> bool {
-        let ([from, to], [low, high]) = (self.place.rows[row].0.along, self.sides(n, row));
-        from < low && high < to
-    }
-
     /// True when something of a row stands in a strip, and one gets past it.
     fn passes_by(&self, n: usize, row: usize) -> bool {
-        let ([view, other], strip) = (self.place.views, &self.strips[n]);
-        let (row, [low, high]) = (&self.place.rows[row].0, wider(strip.across, -SIDE));
-        let along = sorted(row.across.map(|v| view.crossing(other, v, strip.middle())[0]));
+        let (lead, other) = (self.lead(n, row), self.place.views[1]);
+        let ([low, high], along) = (wider(lead.strip.across, -SIDE), lead.along(lead.row.across));
         let blocked = if low < high { other.some_blocked(other.columns(along), low, high) } else { Vec::new() };
         blocked.iter().any(|share| *share > 0.0) && blocked.iter().all(|share| *share <= CLUTTER)
     }

@@ -5,12 +5,13 @@ use super::Evidence;
 use super::beside::{Beside, placed};
 use super::corridors::Strip;
 use super::gates::crossing;
+use super::lead::Lead;
 use super::look::Look;
 use super::passing::Place;
 use super::rows::{Row, SHORTEST};
 use super::sections::Columns;
 use super::turned::Turned;
-use crate::ends::{both, overlap, sorted, wider};
+use crate::ends::{both, overlap, wider};
 use crate::grid::State;
 
 /// What leads through so many rows is a way.
@@ -92,13 +93,6 @@ fn each(views: &[Turned], strips: &[Strip], mut tell: impl FnMut(usize, &Lead, [
     }
 }
 
-/// A strip that ends before a row, and the directions of the row and of the strip.
-struct Lead<'a> {
-    views: [&'a Turned; 2],
-    row: &'a Row,
-    strip: &'a Strip,
-}
-
 impl Lead<'_> {
     /// What of a rack it does not lead over.
     fn left_of(&self, rack: &Row) -> Vec<Row> {
@@ -112,12 +106,6 @@ impl Lead<'_> {
         left.into_iter().filter(|rack| rack.length() >= SHORTEST).collect()
     }
 
-    /// From where to where along it the strip would lie between two places across the row's direction.
-    fn along(&self, across: [f64; 2]) -> [f64; 2] {
-        let [view, other] = self.views;
-        sorted(across.map(|v| view.crossing(other, v, self.strip.middle())[0]))
-    }
-
     /// True when no other strip leads through the row there; of all it is known where they lie.
     fn is_alone(&self, own: usize, strips: &[Strip], placed: &[Beside]) -> bool {
         let along = self.along(self.row.across);
@@ -125,20 +113,6 @@ impl Lead<'_> {
         let is_there =
             |strip: &Strip| overlap(strip.along, along) > 0.0 && overlap(strip.across, self.strip.across) > 0.0;
         !others.into_iter().any(|n| n != own && is_there(&strips[n]))
-    }
-
-    /// From where to where along the row it would lie.
-    fn sides(&self) -> [f64; 2] {
-        let [view, other] = self.views;
-        let middle = f64::midpoint(self.row.across[0], self.row.across[1]);
-        let reach = self.strip.width() / 2.0 / other.sine(view);
-        wider([view.crossing(other, middle, self.strip.middle())[1]; 2], reach)
-    }
-
-    /// True when it would lie between the row's ends.
-    fn is_within(&self) -> bool {
-        let [from, to] = self.sides();
-        self.row.along[0] < from && to < self.row.along[1]
     }
 
     /// True when it would lie between the row's ends, and nothing stands there.

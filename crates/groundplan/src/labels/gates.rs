@@ -83,8 +83,10 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let within = LazyCell::new(|| passing::are_within(views, &places));
     let through = through.find(strips, &mut sure, |direction| within[direction]);
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
-    let open = LazyCell::new(|| passing::open_through(views, &known, &doubtful));
-    let between_bars = LazyCell::new(|| bars::are_between(evidence, look, views, &known, &doubtful));
+    let all = LazyCell::new(|| [&known[..], &doubtful].concat());
+    let all_places = LazyCell::new(|| Place::of_each(views, &all));
+    let open = LazyCell::new(|| passing::open_through(&all_places, &all, known.len()));
+    let between_bars = LazyCell::new(|| bars::are_between(evidence, look, &all_places, &all, known.len()));
     let is_told = |n: usize, gate: &Strip| {
         let widths = &sure[gate.direction];
         let pitch = crossing(views, gate.direction).and_then(|view| view.pitch);

@@ -151,17 +151,12 @@ pub fn is_past_ends_as_bays(strips: &[Strip], places: &[Place], n: usize) -> boo
     !passed.is_empty() && passed.iter().all(is_so)
 }
 
-/// Which of some more strips lead through rows that are open more often than by chance, and end before others.
-pub fn open_through(views: &[Turned], strips: &[Strip], more: &[Strip]) -> Vec<bool> {
-    let all = [strips, more].concat();
-    let mut open = vec![false; more.len()];
-    for place in Place::of_each(views, &all) {
-        let passing = &place.passing[strips.len()..];
-        for (n, own) in passing.iter().enumerate() {
-            open[n] |= place.is_open_through(&all, own, more[n].width());
-        }
-    }
-    open
+/// Which of some strips lead through rows that are open more often than by chance, from one on; of all the places are known
+/// that they lead through.
+pub fn open_through(places: &[Place], strips: &[Strip], first: usize) -> Vec<bool> {
+    let is_open =
+        |n: usize| places.iter().any(|place| place.is_open_through(strips, &place.passing[n], strips[n].width()));
+    (first..strips.len()).map(is_open).collect()
 }
 
 /// Between which strips there is nothing but walls between halls, where no other crosses them.

@@ -145,9 +145,7 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
                 }
             };
             stays[n] &= !is_some || is_told();
-            // Of what lies across two places, what the one cuts stays cut.
-            let cut = if stays[n] { bars.cut(n) } else { Vec::new() };
-            if stays[n] && cut[..] != strips[n..=n] {
+            if let Some(cut) = stays[n].then(|| bars.cut(n)).flatten() {
                 pieces[n] = cut;
             }
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
