@@ -223,3 +223,32 @@ def test_no_way_leads_along_a_wall_over_last_bays_of_which_one_rack_of_two_is_fu
                     picture[low + 1 + 23 * rack : low + 19 + 23 * rack, x + 3 : x + 51] = 0
     survey = groundplan.survey(picture, resolution=0.05)
     assert sum(junction["type"] == "end" for junction in survey.of_kind("junction")) == 5
+
+
+@pytest.mark.parametrize("gap", [48, 54, 60])
+@pytest.mark.parametrize(("rows", "short"), [(5, 3), (4, 2), (5, 2)])
+def test_a_way_as_wide_as_a_bay_leads_past_rows_that_end_at_bars_before_an_office(
+    rows: int, short: int, gap: int
+) -> None:
+    """Rows of 14 bays of 3 m on posts, some four bays shorter, and a way of 3.6 m across all.
+
+    Of each bay one rack is full.
+    """
+    draws, bay, depth, aisle, first, cross = np.random.default_rng(rows), 60, 44, 60, 80, 72  # pixels of 0.05 m
+    picture = walled(2 * first + 14 * bay + cross, (rows + 1) * aisle + rows * depth)
+    for row in range(rows):
+        low = 20 + aisle + row * (aisle + depth)
+        for left, bays in ((20 + first, 5), (20 + first + 5 * bay + cross, 5 if row < short else 9)):
+            for post in range(bays + 1):
+                put_posts(picture, low, left + post * bay, (0, 19, 23, depth - 2))
+            for x in (left, left + bays * bay):
+                picture[low : low + depth, x - 1 : x + 1] = 0
+            for n, rack in enumerate(draws.integers(0, 2, bays)):
+                x = left + n * bay
+                picture[low + 1 + 23 * rack : low + 20 + 23 * rack, x + 3 : x + bay - 3] = 0
+    office, end = 20 + first + 10 * bay + cross + gap, 20 + short * (aisle + depth)
+    picture[18:end, office:] = 0
+    picture[20 : end - 2, office + 2 : -20] = 205
+    survey = groundplan.survey(picture, resolution=0.05)
+    assert min(way["width"] for way in survey.of_kind("corridor")) == pytest.approx(gap * 0.05, abs=0.1)
+    assert all(junction["type"] != "end" for junction in survey.of_kind("junction"))

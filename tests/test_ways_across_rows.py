@@ -386,3 +386,50 @@ def test_staggered_ways_a_little_wider_than_bays_are_ways(options: dict[str, Any
     simulated = simulate.warehouse(**options, scan_every=0.8, beams=400)
     survey = groundplan.survey(simulated.map)
     assert score(survey.to_dict(), simulated.truth)["junction_typed_f1"] == 1
+
+
+def two_halls(way: int) -> Picture:
+    """Four rows of 14 bays of 3.4 m in one hall, and of 10 of 2.5 m in the next with a way through each, as drawn.
+
+    Seven bays of ten are full, and nothing but posts stands at the ways.
+    """
+    draws = np.random.default_rng(2)
+
+    def hall(bay: int, bays: int, places: list[int]) -> Picture:
+        picture = walled(160 + bays * bay + way * bool(places), 5 * 60 + 4 * 44)
+        for row in range(4):
+            low, first = 80 + row * 104, places[row] if places else bays
+            for left, count in ((100, first), (100 + first * bay + way, bays - first)):
+                for x in range(left, left + count * bay + 1, bay) if count else ():
+                    for face in (0, 19, 23, 42):
+                        picture[low + face : low + face + 2, x - 1 : x + 1] = 0
+                for x in range(left, left + count * bay, bay):
+                    for rack in np.flatnonzero(draws.random(2) < 0.7):
+                        picture[low + 1 + 23 * rack : low + 20 + 23 * rack, x + 4 : x + bay - 4] = 0
+        return picture
+
+    one = hall(68, 14, [])
+    return np.hstack([one[:, :-19], hall(50, 10, draws.integers(2, 9, 4).tolist())[:, 19:]])
+
+
+@pytest.mark.parametrize("way", [60, 64, 70])
+def test_a_way_wider_than_its_own_halls_bays_is_one_though_those_of_the_next_hall_are_longer(way: int) -> None:
+    ways = groundplan.survey(two_halls(way), resolution=RESOLUTION).of_kind("corridor")
+    own = [found for found in ways if found["name"].startswith("C") and abs(found["width"] - way * RESOLUTION) < 0.25]
+    assert len(own) >= 3
+
+
+@pytest.mark.parametrize("places", [(170, 420, 560), (300, 150, 440, 560), (200, 420, 160, 380, 560)])
+def test_a_way_through_each_row_is_none_less_where_one_row_is_seen_in_two_pieces(places: tuple[int, ...]) -> None:
+    """Solid rows of 40 m, each with a way of 3.2 m; the last aisle was not seen in the middle."""
+    depth, rows, length = 44, len(places), 800
+    picture = walled(160 + length, (rows + 1) * 60 + rows * depth)
+    for row, at in enumerate(places):
+        low = 80 + row * (60 + depth)
+        for left, right in ((100, 100 + at), (164 + at, 100 + length)):
+            picture[low : low + depth, left:right] = 0
+            picture[low + 2 : low + depth - 2, left + 2 : right - 2] = 205
+    picture[20 + rows * (60 + depth) :, 280:520] = 205
+    ways = groundplan.survey(picture, resolution=RESOLUTION).of_kind("corridor")
+    across = sorted(way["width"] for way in ways if way["name"].startswith("C"))
+    assert across == pytest.approx([3.3] * rows + [4.1] * 2, abs=0.1)

@@ -18,8 +18,9 @@ pub const SQUARE: (f64, f64) = (0.3, 0.015);
 /// wall lines up along one angle, if at all.
 pub const WING: (f64, f64) = (1.0, 0.03);
 
-/// Drift bends halls, so that the two directions of one are square to so many degrees, and not to those above.
-const BENT_DEG: f64 = 1.0;
+/// Drift bends halls, so that the two directions of one are square to so many degrees, and not to those above: then the weak
+/// one needs this share.
+const BENT: (f64, f64) = (1.0, 0.1);
 
 /// A direction that may be one.
 #[derive(Clone, Copy)]
@@ -46,13 +47,15 @@ impl Candidate {
 }
 
 /// A ground plan has two directions, be it only by the ends of its racks, and so has each wing of it: of the weak ones
-/// those square to a strong one that has no such other. Beside a single one the second need not be square. Where no two
+/// those square to a strong one that has no such other, or nearly so if they are longer. Beside a single one the second need
+/// not be square. Where no two
 /// strong ones are square to one another the plan may be skewed, and goods square to its racks are no second wing's
 /// ends: then each has such a weak one, or none has.
 pub fn seconds(weak: &[Candidate], strong: &[Candidate]) -> Vec<Candidate> {
     let share = |f: &Candidate, to: &Candidate| match (is_square(f.angle, to, SQUARE.0), strong.len()) {
         (true, _) => SQUARE.1,
         (false, 1) => SECOND,
+        (false, _) if is_square(f.angle, to, BENT.0) => BENT.1,
         (false, _) => f64::INFINITY,
     };
     let is_its =
@@ -76,7 +79,7 @@ pub fn wings(weak: &[Candidate], strong: &[Candidate], strongest: f64, parameter
 
 /// Those that have no other square to them, be the map bent a little.
 pub fn alone(strong: &[Candidate]) -> impl Iterator<Item = &Candidate> {
-    strong.iter().filter(|f| !strong.iter().any(|other| is_square(other.angle, f, BENT_DEG)))
+    strong.iter().filter(|f| !strong.iter().any(|other| is_square(other.angle, f, BENT.0)))
 }
 
 /// True when an angle is within so much of a direction, or of what is square to it.
@@ -105,5 +108,12 @@ mod tests {
             let strong = [candidate(-17.1, 540.0), candidate(second, 510.0), candidate(22.4, 175.0)];
             assert_eq!(seconds(&[ends], &strong).len(), count, "{second}");
         }
+    }
+
+    #[test]
+    fn drift_bends_the_ends_of_a_wing_too_and_then_they_are_longer() {
+        let strong = [candidate(46.4, 540.0), candidate(-43.7, 245.0), candidate(-70.05, 103.0)];
+        let count = |degrees: f64, metres: f64| seconds(&[candidate(degrees, metres)], &strong).len();
+        assert_eq!([count(20.0, 5.0), count(20.3, 71.0), count(20.3, 5.0), count(21.2, 71.0)], [1, 1, 0, 0]);
     }
 }

@@ -1,9 +1,12 @@
 //! What leads through one row alone: a way, where the rows beside have as many, or an empty bay, which may lie anywhere.
 
 use super::corridors::Strip;
+use super::lags::LONGEST;
 use super::passing::{Passing, Place};
-use super::pitch::LONGEST;
+use super::rows::SHORTEST;
 use super::widths::are_alike;
+use crate::ends::overlap;
+use std::collections::BTreeSet;
 
 /// Ways that lead through one row each are as many in each of so many rows at least.
 const ROWS: usize = 3;
@@ -54,16 +57,41 @@ impl Alone {
     }
 
     /// True when as many ways as wide as one lead through each of the rows of its place, and none through several: shelves
-    /// are empty anywhere.
+    /// are empty anywhere. Pieces in line are one row, and what has no room for a way between racks is none.
     pub fn is_in_every_row(&self, place: &Place, own: &Passing, width: f64) -> bool {
         let &[row] = &own.rows[..] else { return false };
-        let rows = place.rows_with(row);
-        let own_alike = self.alike(row, width);
-        rows.len() >= ROWS && rows.iter().all(|&n| !self.on[n] && self.alike(n, width) == own_alike)
+        let whole = in_line(place, place.rows_with(row));
+        let whole: Vec<_> = whole.into_iter().filter(|rows| length(place, rows) >= width + 2.0 * SHORTEST).collect();
+        let alike = |rows: &BTreeSet<usize>| rows.iter().map(|&n| self.alike(n, width)).sum::<usize>();
+        let own_alike = whole.iter().find(|rows| rows.contains(&row)).map(alike);
+        let is_as_own = |rows: &BTreeSet<usize>| rows.iter().all(|&n| !self.on[n]) && Some(alike(rows)) == own_alike;
+        whole.len() >= ROWS && whole.iter().all(is_as_own)
     }
 
     /// How many as wide lead through a row alone.
     fn alike(&self, row: usize, width: f64) -> usize {
         self.alone[row].iter().filter(|other| are_alike(**other, width)).count()
     }
+}
+
+/// Rows that are in line with one another are pieces of one: where one of the aisles beside it was seen in pieces.
+fn in_line(place: &Place, rows: BTreeSet<usize>) -> Vec<BTreeSet<usize>> {
+    let across = |row: usize| place.rows[row].0.across;
+    let mut whole: Vec<BTreeSet<usize>> = Vec::new();
+    for row in rows {
+        let is_in_line = |&other: &usize| {
+            let least = f64::min(place.rows[row].0.depth(), place.rows[other].0.depth());
+            overlap(across(row), across(other)) > least / 2.0
+        };
+        match whole.iter_mut().find(|pieces| pieces.iter().any(is_in_line)) {
+            Some(pieces) => _ = pieces.insert(row),
+            None => whole.push(BTreeSet::from([row])),
+        }
+    }
+    whole
+}
+
+/// How long some rows are together, metres.
+fn length(place: &Place, rows: &BTreeSet<usize>) -> f64 {
+    rows.iter().map(|&row| place.rows[row].0.length()).sum()
 }

@@ -14,8 +14,6 @@ use crate::ends::{overlap, wider};
 use std::cell::OnceCell;
 use std::iter::{self, Sum};
 
-/// What is free of a row for so much, metres, has two ends of its own.
-const FREE: f64 = 0.5;
 /// What is so near to a way's sides is of that, metres, and a wall so near to a row's end ends it.
 const NEAR: f64 = 0.3;
 /// What lies between bars is no narrower than so many bays: posts or goods narrow an empty one.
@@ -116,8 +114,25 @@ impl<'a> Bars<'a> {
     /// True when what one of the strips passes through of the rows, between their ends, lies between bars.
     pub fn are_beside(&self, n: usize) -> bool {
         let is_as_wide = |bay: f64| self.strips[n].width() >= AS_WIDE * bay;
-        self.place.views[0].pitch.is_none_or(is_as_wide)
+        self.place.pitch_of(&self.place.passing[n]).is_none_or(is_as_wide)
             && self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_way())
+    }
+
+    /// True when bars stand on both sides of one of the strips and end most rows, and beside no bay.
+    pub fn stand_beside_no_bays(&self, n: usize) -> bool {
+        self.told(n, &self.place.passing[n].rows)
+            .is_some_and(|Told { sides, ends, bays }| sides.open + bays.closed == 0 && ends.closed > ends.open)
+    }
+
+    /// True when each of the rows whose ends one of the strips leads past ends there at a bar, as most do in that part of the
+    /// place, and none stands beside a bay.
+    pub fn end_rows_before(&self, n: usize) -> bool {
+        let own = &self.place.passing[n];
+        let Some(first) = self.place.first_of(own).filter(|_| !own.is_within) else { return false };
+        let [ends, bays] = self.ends_and_bays(first);
+        let inner = |row: usize| self.place.rows[row].0.inner(self.sides(n, row));
+        let is_barred = |&row: &usize| self.row(row).columns.is_closed_at(inner(row));
+        bays.closed == 0 && ends.closed > ends.open && own.rows.iter().all(is_barred)
     }
 
     /// True when no bar stands at a side of what one of the strips passes through, though bars end the rows and do not stand
@@ -135,7 +150,7 @@ impl<'a> Bars<'a> {
     /// pieces then, and where the next row is such a one it stops. Nothing where it stays as it is.
     pub fn cut(&self, n: usize) -> Option<Vec<Strip>> {
         let (own, strip) = (&self.place.passing[n], &self.strips[n]);
-        if !own.is_within || self.place.views[0].pitch.is_none() {
+        if !own.is_within || self.place.pitch_of(own).is_none() {
             return None;
         }
         let mut ends = strip.stops;
@@ -171,21 +186,23 @@ impl<'a> Bars<'a> {
 
     /// True when bays are known, and what some rows have between the sides of a strip is one by the bars.
     fn is_bay(&self, n: usize, rows: &[usize]) -> bool {
-        self.place.views[0].pitch.is_some() && self.told(n, rows).is_some_and(|told| told.is_bay())
+        self.place.pitch_of(&self.place.passing[n]).is_some() && self.told(n, rows).is_some_and(|told| told.is_bay())
     }
 
     /// What bars tell of a strip in some rows, where it passes between rows' ends.
     fn told(&self, n: usize, rows: &[usize]) -> Option<Told> {
         let first = self.place.first_of(&self.place.passing[n]).filter(|_| self.place.passing[n].is_within)?;
-        let part: Vec<&Closed> = self.place.rows_with(first).into_iter().map(|row| self.row(row)).collect();
+        let [ends, bays] = self.ends_and_bays(first);
         let sides = |&row: &usize| {
             Often::of(self.sides(n, row).into_iter().map(|side| self.row(row).columns.is_closed_at(side)))
         };
-        Some(Told {
-            sides: rows.iter().map(sides).sum(),
-            ends: part.iter().map(|row| row.ends).sum(),
-            bays: part.iter().map(|row| row.bays).sum(),
-        })
+        Some(Told { sides: rows.iter().map(sides).sum(), ends, bays })
+    }
+
+    /// How often the rows are closed at their ends, and beside bays, in the part of the place that a row is of.
+    fn ends_and_bays(&self, row: usize) -> [Often; 2] {
+        let part: Vec<&Closed> = self.place.rows_with(row).into_iter().map(|row| self.row(row)).collect();
+        [part.iter().map(|row| row.ends).sum(), part.iter().map(|row| row.bays).sum()]
     }
 
     /// A strip across a row.
@@ -227,7 +244,7 @@ impl<'a> Bars<'a> {
     fn look_at(&self, n: usize) -> Closed<'a> {
         let (place, strips) = (self.place, self.strips);
         let ([view, other], (row, between), ways) = (place.views, &place.rows[n], &place.through[n]);
-        let columns = Columns::new(self.look, &self.evidence.grid.frame, [view, other], row, view.pitch);
+        let columns = Columns::new(self.look, &self.evidence.grid.frame, [view, other], row, view.pitch_of(row));
         let sides = |way: usize| self.sides(way, n);
         let between = between.map(|aisle| place.aisles[aisle]);
         let is_at_wall = |end: f64| walled(view, strips, row, between, view.columns(wider([end; 2], NEAR))).any();
@@ -245,7 +262,7 @@ impl<'a> Bars<'a> {
         });
         let own = row.along.into_iter().filter(|&end| !is_of_way([end; 2])).chain(known);
         let ends = Often::of(own.filter(|&end| !is_at_wall(end)).map(|end| columns.is_closed_at(end)));
-        let free = columns.free(FREE).into_iter().filter(|&(ends, _)| !is_of_way(ends));
+        let free = columns.free().into_iter().filter(|&(ends, _)| !is_of_way(ends));
         // Between two bars a way may lie that is not known.
         let closed = |sides: [bool; 2]| if sides == [true; 2] { Often::default() } else { Often::of(sides) };
         let bays = free.map(|(_, sides)| closed(sides)).sum();

@@ -5,6 +5,7 @@
 //! rows' ends tell how many: posts stand there.
 
 use super::Evidence;
+use super::lags;
 use super::period::{self, Period};
 use super::pitch;
 use super::recall::Key;
@@ -123,12 +124,12 @@ fn common(rows: &[Vec<f64>], evidence: &Evidence) -> Option<f64> {
 fn in_a_bay(common: f64, lengths: &[usize], posts: Option<f64>) -> Option<usize> {
     let told = posts.and_then(|bay| whole(bay / common));
     // What is longer than most beams are recurs by chance as a rule, unless posts tell it.
-    if common > pitch::LONGEST && told.is_none() {
+    if common > lags::LONGEST && told.is_none() {
         return None;
     }
     // A bay shorter than any that is looked for among posts is told as some of them: then rows are of any number.
     let fit = |times: &usize| 2 * lengths.iter().filter(|length| *length % times == 0).count() >= lengths.len();
-    let most = (pitch::LONGEST / common + WHOLE) as usize;
+    let most = (lags::LONGEST / common + WHOLE) as usize;
     by_lengths(lengths, most).or(told.filter(fit)).or(Some(1))
 }
 

@@ -117,7 +117,8 @@ impl Lead<'_> {
 
     /// True when it would lie between the row's ends, and nothing stands there.
     fn is_free(&self, evidence: &Evidence, look: &Look) -> bool {
-        let columns = || Columns::new(look, &evidence.grid.frame, self.views, self.row, self.views[0].pitch);
+        let columns =
+            || Columns::new(look, &evidence.grid.frame, self.views, self.row, self.views[0].pitch_of(self.row));
         self.is_within() && columns().is_free(self.sides())
     }
 

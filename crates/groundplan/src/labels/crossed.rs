@@ -29,6 +29,8 @@ const HELD: f64 = 0.65;
 /// Where posts recur along the rows, and not across them too, what crosses them is no more than so many times as long as
 /// the shorter of the two corridors beside a row: short ones between the goods of racks do not make bays of the aisles.
 const LONGER: f64 = 4.0;
+/// Bars seldom stand beside bays where they close no more than one in so many of these's ends.
+const SELDOM: usize = 4;
 /// Uprights leave so much of a strip that goes on between them.
 const LEFT: f64 = 0.5;
 /// A way through a row is no narrower than gates are, or than this share of the aisles beside it.
@@ -171,7 +173,13 @@ fn crossed(
             if judged.is_empty() {
                 return Vec::new();
             }
-            let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, view.pitch.or(common));
+            let columns = Columns::new(
+                look,
+                &evidence.grid.frame,
+                [view, other],
+                row,
+                if view.pitch.is_some() { view.pitch_of(row) } else { common },
+            );
             let (ways, open) = (columns.ways(), columns.open());
             let cross = |n: usize| {
                 let found = cross([view, other], row, (&columns, &ways, &open), &strips[n], aisles)?;
@@ -200,6 +208,19 @@ enum Passes {
     Before,
 }
 
+/// What of a row tells whether there is a way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sign {
+    Nothing,
+    /// What is free about the strip's middle is no wider than a bay, and narrower than the strip.
+    Bay,
+    /// The row ends before the strip at a bar, and so many of the ends of what else is free in it are closed.
+    Bar {
+        closed: usize,
+        ends: usize,
+    },
+}
+
 /// A row that a strip leads across: in the strip's own places, and whether there is a way.
 #[derive(Clone, Debug)]
 struct Crossed {
@@ -216,8 +237,7 @@ struct Crossed {
     free: Option<Free>,
     /// From where to where nothing stands in the row within the strip, across.
     between: Vec<[f64; 2]>,
-    /// What is free of the row about the strip's middle is no wider than a bay, and narrower than the strip.
-    leaves_a_bay: bool,
+    sign: Sign,
 }
 
 impl Crossed {
@@ -263,7 +283,17 @@ fn cross(
     let across = |u: f64| other.place(view.to_map([u, middle]))[1];
     let along_of = |places: [f64; 2]| sorted(places.map(along));
     let is_narrower = |ends: &[f64; 2]| ends[1] - ends[0] <= sides[1] - sides[0] - NARROWED;
-    let leaves_a_bay = open.iter().any(|ends| holds(*ends, u) && columns.is_as_a_bay(*ends) && is_narrower(ends));
+    let bar = || {
+        let closed = columns.closed_elsewhere(sides);
+        Sign::Bar { closed: closed.iter().filter(|closed| **closed).count(), ends: closed.len() }
+    };
+    let is_closed = || strip.bays && way && columns.is_closed_at(row.inner(sides));
+    let leaves_a_bay = |ends: &[f64; 2]| holds(*ends, u) && columns.is_as_a_bay(*ends) && is_narrower(ends);
+    let sign = match at_end {
+        true if is_closed() => bar(),
+        false if open.iter().any(leaves_a_bay) => Sign::Bay,
+        _ => Sign::Nothing,
+    };
     Some(Crossed {
         along: along_of(between.map(Strip::middle)),
         outer: along_of([between[0].across[0], between[1].across[1]]),
@@ -272,7 +302,7 @@ fn cross(
         passes,
         free,
         between: open.iter().map(|&ends| shared(sorted(ends.map(across)), strip.across)).filter(is_wide).collect(),
-        leaves_a_bay,
+        sign,
     })
 }
 
@@ -281,7 +311,8 @@ fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
     let expected = by_chance(&crossed);
     let are_ends = crossed.iter().all(|row| row.at_end() && row.way);
     let least = if are_ends { AT_ENDS } else { EXPECTED.1 };
-    if strip.bays && expected >= least && !(are_ends && is_long_before(&strip, &crossed)) {
+    let is_told = || are_ends && is_long_before(&strip, &crossed) || are_barred(&crossed);
+    if strip.bays && expected >= least && !is_told() {
         return Vec::new();
     }
     if expected >= EXPECTED.1 && lies_over_bays(&crossed) {
@@ -320,7 +351,7 @@ fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
 /// as where goods that stand back from their posts have lines. One row alone does not tell a gap between frames from a bay.
 fn lies_over_bays(crossed: &[Crossed]) -> bool {
     let open: Vec<_> = crossed.iter().filter(|row| !row.at_end() && row.open).collect();
-    open.len() > 1 && open.iter().all(|row| row.leaves_a_bay)
+    open.len() > 1 && open.iter().all(|row| row.sign == Sign::Bay)
 }
 
 /// True when a strip past the ends of rows is long enough for a way by itself without what leads through those that reach into
@@ -331,6 +362,17 @@ fn is_long_before(strip: &Strip, crossed: &[Crossed]) -> bool {
     !before.is_empty()
         && !corridors::is_short(strip.length() - through, strip.width())
         && strip.score >= HELD * strip.length()
+}
+
+/// True when several rows end at bars before a strip, no other reaches into it, and seldom stands one beside a bay.
+fn are_barred(crossed: &[Crossed]) -> bool {
+    let before: Vec<_> = crossed.iter().filter(|row| row.at_end()).collect();
+    let bars = before
+        .iter()
+        .filter_map(|row| if let Sign::Bar { closed, ends } = row.sign { Some([closed, ends]) } else { None });
+    let bars: Vec<[usize; 2]> = bars.collect();
+    let [closed, ends] = [0, 1].map(|n| bars.iter().map(|bar| bar[n]).sum::<usize>());
+    before.len() > 1 && bars.len() == before.len() && SELDOM * closed <= ends
 }
 
 /// How many places would be expected at which as many rows are free by chance (as of alignments, Desolneux, Moisan and
@@ -364,7 +406,7 @@ mod tests {
             passes: Passes::Within,
             free: None,
             between: Vec::new(),
-            leaves_a_bay: false,
+            sign: Sign::Nothing,
         }
     }
 
@@ -411,8 +453,23 @@ mod tests {
     }
 
     #[test]
+    fn what_is_as_bays_is_a_way_where_several_rows_end_before_it_at_bars() {
+        let is_way = |signs: [Sign; 2]| {
+            let [one, two] = [([1.5, 6.5], signs[0]), ([6.5, 11.5], signs[1])].map(|(along, sign)| Crossed {
+                passes: Passes::End,
+                sign,
+                ..row(along, true)
+            });
+            !ways(Strip { bays: true, ..strip() }, vec![one, two, row([11.5, 16.5], false)]).is_empty()
+        };
+        let [alone, seldom, often] = [0, 1, 2].map(|closed| Sign::Bar { closed, ends: 4 * closed.min(1) });
+        assert!(is_way([alone; 2]) && is_way([alone, seldom]));
+        assert!(!is_way([alone, often]) && !is_way([alone, Sign::Nothing]) && !is_way([Sign::Nothing; 2]));
+    }
+
+    #[test]
     fn what_posts_leave_no_more_of_than_a_bay_is_none_though_its_sides_are_wider_apart() {
-        let bay = |along| Crossed { leaves_a_bay: true, ..row(along, true) };
+        let bay = |along| Crossed { sign: Sign::Bay, ..row(along, true) };
         assert_eq!(pieces(&[bay([1.5, 20.0]), bay([20.0, 38.5])]), [] as [[f64; 2]; 0]);
         // What is wider than bays in one row is a way there, and through others.
         assert_eq!(pieces(&[bay([1.5, 20.0]), row([20.0, 38.5], true)]), [[0.0, 40.0]]);

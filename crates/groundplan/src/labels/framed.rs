@@ -2,7 +2,7 @@
 //! frames there, and from one to the next in line it is a bay.
 
 use super::frames::{LEG, NEAR};
-use super::pitch::{LAGS, LONGEST, in_parts};
+use super::lags::{LAGS, LONGEST, in_parts};
 use super::uprights::Upright;
 use crate::ends::{holds, overlap, sorted};
 use std::collections::BTreeMap;

@@ -162,7 +162,7 @@ fn seen<'a>(
         let view = &views[row.direction];
         let middles = between.map(|n| strips[n].middle());
         let widest = between.map(|n| strips[n].width()).into_iter().fold(0.0, f64::max);
-        let columns = Columns::new(look, &evidence.grid.frame, [view, other], reaching, view.pitch);
+        let columns = Columns::new(look, &evidence.grid.frame, [view, other], reaching, view.pitch_of(row));
         let ways = columns.ways();
         Some(Seen { own: row.along, row: reaching, columns, ways, views: [view, other], between, middles, widest })
     })

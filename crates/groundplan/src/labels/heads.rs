@@ -184,7 +184,8 @@ impl Heads<'_> {
         let away = if self.side == 0 { 1.0 } else { -1.0 };
         let ends = [wall + away * WALL, wall + away * most];
         let before = Row { direction: self.view.direction, along: sorted(ends), across: row.faces, between: None };
-        let columns = Columns::new(self.look, self.frame, [self.view, self.other], &before, self.view.pitch);
+        let columns =
+            Columns::new(self.look, self.frame, [self.view, self.other], &before, self.view.pitch_of(&before));
         columns.first(self.side == 0).map(|off| off.map_or(most, |off| WALL + off))
     }
 

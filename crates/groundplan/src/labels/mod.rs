@@ -28,6 +28,7 @@ mod heads;
 mod joined;
 mod junctions;
 mod known;
+mod lags;
 mod lead;
 mod led;
 mod legs;

@@ -10,6 +10,7 @@ use super::seldom;
 use super::turned::Turned;
 use super::whole;
 use crate::ends::{holds, overlap, wider};
+use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What leads through a row of two racks is no narrower than this share of the aisles beside it.
@@ -30,6 +31,8 @@ pub struct Place<'a> {
     beside: Vec<[Vec<usize>; 2]>,
     /// Which of the rows are walls between halls.
     walls: Vec<bool>,
+    /// From post to post along each row, once it is asked.
+    pitches: Vec<OnceCell<Option<f64>>>,
 }
 
 impl<'a> Place<'a> {
@@ -43,7 +46,8 @@ impl<'a> Place<'a> {
             let views = [layout.view, crossing(views, layout.view.direction)?];
             let (passing, through) = layout.passed_by(views, strips, &placed, &along);
             let Layout { aisles, rows, beside, walls, .. } = layout;
-            Some(Self { views, aisles, rows, passing, through, beside, walls })
+            let pitches = rows.iter().map(|_| OnceCell::new()).collect();
+            Some(Self { views, aisles, rows, passing, through, beside, walls, pitches })
         };
         all.into_iter().filter_map(of).collect()
     }
@@ -63,6 +67,12 @@ impl Place<'_> {
         let rows = || rows.iter().map(|&row| &self.rows[row].0);
         own.is_within && seldom::are_full_elsewhere(self.views[0], rows(), width)
             || own.rows.iter().all(may_be_led_through) && seldom::are_open(self.views[0], rows(), width)
+    }
+
+    /// From post to post along the rows that something passes through, metres, as about the first of them.
+    pub fn pitch_of(&self, own: &Passing) -> Option<f64> {
+        let row = self.first_of(own).or(own.rows.first().copied())?;
+        *self.pitches[row].get_or_init(|| self.views[0].pitch_of(&self.rows[row].0))
     }
 
     /// True when a row goes on past both sides of a strip that would cross it, by so much, metres.
@@ -146,7 +156,7 @@ pub fn is_past_ends_as_bays(strips: &[Strip], places: &[Place], n: usize) -> boo
     let passed: Vec<&Place> = places.iter().filter(|place| !place.passing[n].rows.is_empty()).collect();
     let is_so = |place: &&Place| {
         let is_as_bays = |pitch| is_as_bays(strips[n].width(), pitch);
-        !place.passing[n].is_within && place.views[0].pitch.is_some_and(is_as_bays)
+        !place.passing[n].is_within && place.pitch_of(&place.passing[n]).is_some_and(is_as_bays)
     };
     !passed.is_empty() && passed.iter().all(is_so)
 }

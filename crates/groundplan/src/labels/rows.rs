@@ -45,6 +45,11 @@ impl Row {
         (self.direction, self.along, self.across)
     }
 
+    /// Of the sides of what leads past one of its ends the one that lies before that end, or the end.
+    pub fn inner(&self, [low, high]: [f64; 2]) -> f64 {
+        if low <= self.along[0] || high < self.along[1] { high.min(self.along[1]) } else { low.max(self.along[0]) }
+    }
+
     /// Its middle in the map frame.
     pub fn middle(&self, views: &[Turned]) -> [f64; 2] {
         let [u, v] = [self.along, self.across].map(|ends| f64::midpoint(ends[0], ends[1]));

@@ -10,7 +10,7 @@ use super::runs::runs;
 use super::shares::Shares;
 use super::step::{BAYS, Section};
 use super::turned::Turned;
-use crate::ends::wider;
+use crate::ends::{overlap, wider};
 use crate::grid::Frame;
 
 /// A way is so wide, metres.
@@ -21,6 +21,8 @@ const BAY: f64 = 1.03;
 const NARROW: f64 = 0.8;
 /// A section this near to a whole number of pitches is one of empty bays, unless its ends are closed.
 const WHOLE: f64 = 0.1;
+/// What is free of a row for so much, metres, has two ends of its own.
+const APART: f64 = 0.5;
 /// What stands so near to a way's side stands at it, metres.
 pub const SIDE: f64 = 0.35;
 /// A column of which this share is not free is of what closes a row.
@@ -165,12 +167,18 @@ impl<'a> Columns<'a> {
         runs(&open, true).into_iter().map(|(from, to)| [self.place(from), self.place(to)]).collect()
     }
 
-    /// What is free between two uprights for so much, metres, and whether all of the row's depth is closed at its ends.
-    pub fn free(&self, least: f64) -> Vec<([f64; 2], [bool; 2])> {
+    /// What is free between two uprights, and whether all of the row's depth is closed at its ends.
+    pub fn free(&self) -> Vec<([f64; 2], [bool; 2])> {
         let is_free =
-            |from: usize, to: usize| self.place(to) - self.place(from) >= least && self.share(from, to) <= CLUTTER;
+            |from: usize, to: usize| self.place(to) - self.place(from) >= APART && self.share(from, to) <= CLUTTER;
         let closed = |ends: [f64; 2]| (ends, ends.map(|end| self.is_closed_at(end)));
         self.gaps(is_free).into_iter().map(closed).collect()
+    }
+
+    /// Whether the row is closed at each end of what is free of it, but for what lies between two sides.
+    pub fn closed_elsewhere(&self, sides: [f64; 2]) -> Vec<bool> {
+        let others = self.free().into_iter().filter(|(ends, _)| overlap(*ends, sides) <= 0.0);
+        others.flat_map(|(_, closed)| closed).collect()
     }
 
     /// How far from its lower end, or from its upper one, the first of it stands, metres, and the first that fills half of it:

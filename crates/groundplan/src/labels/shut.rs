@@ -2,8 +2,8 @@
 
 use super::barriers;
 use super::corridors::Strip;
+use super::lags::LONGEST;
 use super::panes;
-use super::pitch::LONGEST;
 use super::sided;
 use super::turned::Turned;
 use crate::ends::sorted;

@@ -180,7 +180,7 @@ impl<'a> Through<'a> {
             let is_alone = self.above[n].is_empty() && self.below[n].is_empty();
             let ways = seen.columns.between_racks().into_iter();
             let ways = ways.filter(move |way| is_alone || !seen.columns.is_as_a_bay(*way));
-            ways.filter_map(|way| seen.gate(way)).map(move |gate| (gate, seen.views[0].pitch, is_alone))
+            ways.filter_map(|way| seen.gate(way)).map(move |gate| (gate, seen.views[0].pitch_of(seen.row), is_alone))
         });
         gates.collect()
     }
@@ -250,7 +250,10 @@ impl<'a> Through<'a> {
     fn is_way(&self, common: &Common, widths: &[Widths], is_told_within: impl Fn(usize) -> bool) -> bool {
         let [view, other] = self.rows[common.rows[0]].views;
         let known = &widths[other.direction];
-        let limit = match (self.is_whole(common), known.have(common.width() + BETWEEN_CELLS, view.pitch)) {
+        let limit = match (
+            self.is_whole(common),
+            known.have(common.width() + BETWEEN_CELLS, view.pitch_of(self.rows[common.rows[0]].row)),
+        ) {
             (false, _) => SOME,
             (true, _) if self.is_past_ends(common) => LIKELY,
             (true, true) => ALIKE,

@@ -6,7 +6,7 @@ use super::grounds::Grounds;
 use super::lined::Lined;
 use super::look::{LANES, Look};
 use super::panes::{Across, Pane};
-use super::pitch;
+use super::pitch::{self, Pitch};
 use super::quarter::Quarter;
 use super::recall::Key;
 use super::rows::Row;
@@ -47,6 +47,8 @@ pub struct Turned {
     pub pitch: Option<f64>,
     /// The same by frames that stand alone, which counts where too few posts recur.
     framed: Option<f64>,
+    /// By what recurs along its lines, about each row.
+    by_rows: Arc<Option<Pitch>>,
     /// Offsets of the direction's lines, ascending.
     pub offsets: Arc<Vec<f64>>,
     /// For each of those lines, whether structure lies on it in each column.
@@ -117,6 +119,7 @@ impl Turned {
             samples,
             pitch: None,
             framed: None,
+            by_rows: Arc::default(),
             offsets: Arc::default(),
             covered: Arc::default(),
             touched: Arc::default(),
@@ -165,15 +168,23 @@ impl Turned {
 
     /// Finds what recurs along the lines of what is seen; of the gradients the specks are asked.
     pub fn recur(&mut self, evidence: &Evidence) {
-        self.pitch = pitch::find(evidence, self).or(self.framed);
+        let found = pitch::find(evidence, self);
+        self.pitch = found.as_ref().map(|found| found.common).or(self.framed);
+        self.by_rows = Arc::new(found);
         if evidence.recall.keeps() {
             self.keys = self.find_keys();
         }
     }
 
+    /// From post to post along a row, metres: where posts recur in some rows of the view, as about that one.
+    pub fn pitch_of(&self, row: &Row) -> Option<f64> {
+        self.by_rows.as_ref().as_ref().map_or(self.pitch, |pitch| pitch.about(row))
+    }
+
     /// Lets go of all that is seen: what is left says where places are.
     pub fn let_go(&mut self) {
         self.unsee();
+        self.by_rows = Arc::default();
         (self.offsets, self.keys.1) = (Arc::default(), Arc::default());
         (self.covered, self.touched, self.lined) = (Arc::default(), Arc::default(), Arc::default());
         (self.panes, self.across) = (Arc::default(), Arc::default());
@@ -211,6 +222,7 @@ impl Turned {
             across: Arc::clone(&self.across),
             rows: Arc::clone(&self.rows),
             grounds: Grounds::default(),
+            by_rows: Arc::clone(&self.by_rows),
             keys: (self.keys.0, Arc::clone(&self.keys.1)),
             ..*self
         })

@@ -87,10 +87,11 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 
 /// The strips without those that lead through some rows of a place and have no width of what leads through all: bays; nor
 /// those at a wall that the rows beside go on to. Where nothing leads through all but past their ends, what has no bays'
-/// width is none, nor what leads through rows of two racks that are open more often than by chance; where something does, what
-/// lies as empty bays do is one. What leads past rows' ends up to one that goes on farther is none, but where something leads
-/// through all and it is as wide as bays, nor where nothing of the rows beside reaches into it. Nor those beside which, with no
-/// rack between, one leads through more rows. Bars decide where that leaves it open, and cut what leads on over bays.
+/// width is none, nor what each row has as many of, between bars that stand beside nothing else, nor what leads through rows of
+/// two racks that are open more often than by chance; where something does, what lies as empty bays do is one. What leads past
+/// rows' ends up to one that goes on farther is none, but where something leads through all and it is as wide as bays, nor where
+/// nothing of the rows beside reaches into it or those end at bars. Nor those beside which, with no rack between, one leads
+/// through more rows. Bars decide where that leaves it open, and cut what leads on over bays.
 pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let mut pieces: Vec<Vec<Strip>> = strips.iter().map(|strip| vec![strip.clone()]).collect();
@@ -114,28 +115,29 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             }
             let (known, is_told_within) = &told[parts[place.first_of(own).unwrap_or(own.rows[0])]];
             let width = strips[n].width();
+            let pitch = || place.pitch_of(own);
             let is_double = |&row: &usize| seldom::is_double(&place.rows[row].0);
-            let may_be_bay = || view.pitch.is_some_and(|pitch| is_as_bays(width, pitch));
+            let may_be_bay = || pitch().is_some_and(|pitch| is_as_bays(width, pitch));
             let is_as_the_hall_leaves =
                 || leads_past_ends(&place, &strips[n], own) && !(*is_told_within && may_be_bay());
-            let is_past_ends = || own.rows.len() > 1 && !own.is_within && !bars.reach_into(n);
+            let is_past_ends =
+                || own.rows.len() > 1 && !own.is_within && (!bars.reach_into(n) || bars.end_rows_before(n));
             let is_some = !own.next.is_empty() && !known.is_empty() && !is_as_the_hall_leaves() && !is_past_ends();
             // Where the rows beside it go on to the wall, one that does not is empty there.
             let is_bay = || own.rows.len() == 1 && !own.is_led_on && is_at_wall(other, &strips[n]);
             // Ways past the rows' ends are as wide as the hall leaves, and tell nothing of what leads through the rows.
-            let is_no_bay = || {
-                !*is_told_within
-                    && (view.pitch.map_or_else(
-                        || alone.is_longer_than_bays(own, width) || alone.is_in_every_row(&place, own, width),
-                        |pitch| !is_as_bays(width, pitch),
-                    ) || place.is_open_through(strips, own, width))
+            let is_in_every_row = || alone.is_in_every_row(&place, own, width);
+            let is_way_of_its_row = || match pitch() {
+                Some(pitch) => !is_as_bays(width, pitch) || is_in_every_row() && bars.stand_beside_no_bays(n),
+                None => alone.is_longer_than_bays(own, width) || is_in_every_row(),
             };
-            let may_lie = || view.pitch.is_none() || may_be_bay();
+            let is_no_bay = || !*is_told_within && (is_way_of_its_row() || place.is_open_through(strips, own, width));
+            let may_lie = || pitch().is_none() || may_be_bay();
             let is_as_bays_lie = || may_lie() && alone.is_as_bays_lie(&place, strips, own, width);
             let is_empty = || *is_told_within && may_be_bay() && empties::is_empty(&place, strips, n);
             let lies_as_bays = || is_as_bays_lie() || is_empty();
             // Where width and place disagree, or neither tells, bars do; and where these are missed it is none.
-            let is_told = || match (known.have(width, view.pitch) || is_no_bay(), is_bay() || lies_as_bays()) {
+            let is_told = || match (known.have(width, pitch()) || is_no_bay(), is_bay() || lies_as_bays()) {
                 (true, false) => !bars.are_missed(n),
                 (false, true) => false,
                 (true, true) => bars.are_beside(n),
