@@ -207,10 +207,7 @@ def test_a_way_as_wide_as_bays_past_the_ends_of_some_rows_leads_past_all_that_le
     assert types.count("end") == 0 and types.count("L") == 4
 
 
-MISTAKEN = pytest.mark.xfail(reason="rows whose goods line up are taken for rows that end at bars")
-
-
-@pytest.mark.parametrize("full", [pytest.param(1, marks=MISTAKEN), 2])
+@pytest.mark.parametrize("full", [1, 2])
 def test_no_way_leads_along_a_wall_over_last_bays_of_which_one_rack_of_two_is_full(full: int) -> None:
     # Four rows of nine bays of 2.7 m on posts, the last of them at the wall, and of these all are empty but that one.
     draws, bay, depth, aisle, first = np.random.default_rng(full), 54, 44, 60, 80  # pixels of 0.05 m

@@ -120,8 +120,10 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             let may_be_bay = || pitch().is_some_and(|pitch| is_as_bays(width, pitch));
             let is_as_the_hall_leaves =
                 || leads_past_ends(&place, &strips[n], own) && !(*is_told_within && may_be_bay());
-            let is_past_ends =
-                || own.rows.len() > 1 && !own.is_within && (!bars.reach_into(n) || bars.end_rows_before(n));
+            // A row beside those that end at bars, which has empty bays where they end, goes on no farther than the way.
+            let goes_past = |&row: &usize| place.goes_past(row, &strips[n], FARTHER);
+            let is_barred = || bars.end_rows_before(n) && own.next.iter().all(goes_past);
+            let is_past_ends = || own.rows.len() > 1 && !own.is_within && (!bars.reach_into(n) || is_barred());
             let is_some = !own.next.is_empty() && !known.is_empty() && !is_as_the_hall_leaves() && !is_past_ends();
             // Where the rows beside it go on to the wall, one that does not is empty there.
             let is_bay = || own.rows.len() == 1 && !own.is_led_on && is_at_wall(other, &strips[n]);
