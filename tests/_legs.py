@@ -31,6 +31,12 @@ def hall(width: float, height: float, boxes: Iterator[Box], degrees: float = 0.0
     return picture[::-1]
 
 
+def put_posts(picture: Picture, low: int, x: int, faces: tuple[int, ...]) -> None:
+    """Posts two pixels thick about a column, at each of a row's faces."""
+    for face in faces:
+        picture[low + face : low + face + 2, x - 1 : x + 1] = 0
+
+
 def legs(x: float, y: float, bays: int, depth: float, pitch: float, leg: float = 0.1) -> Iterator[Box]:
     """Legs of a rack along x, its lower corner at a place."""
     for n in range(bays + 1):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from zoo import Picture, walled
+from _legs import put_posts
+from zoo import walled
 
 import groundplan
 from groundplan import simulate
@@ -166,12 +167,6 @@ def test_ways_lead_past_both_ends_of_a_single_row_though_they_are_as_wide_as_its
     ways = sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C"))
     assert ways == pytest.approx(sorted([gap, 4.0]), abs=0.3)
     assert [label["type"] for label in survey.of_kind("junction")] == ["L"] * 4
-
-
-def put_posts(picture: Picture, low: int, x: int, faces: tuple[int, ...]) -> None:
-    """Posts two pixels thick about a column, at each of a row's faces."""
-    for face in faces:
-        picture[low + face : low + face + 2, x - 1 : x + 1] = 0
 
 
 def racks(seed: int) -> groundplan.Survey:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from _legs import put_posts
 from zoo import Picture, walled
 
 import groundplan
@@ -399,10 +400,10 @@ def two_halls(way: int) -> Picture:
         picture = walled(160 + bays * bay + way * bool(places), 5 * 60 + 4 * 44)
         for row in range(4):
             low, first = 80 + row * 104, places[row] if places else bays
-            for left, count in ((100, first), (100 + first * bay + way, bays - first)):
-                for x in range(left, left + count * bay + 1, bay) if count else ():
-                    for face in (0, 19, 23, 42):
-                        picture[low + face : low + face + 2, x - 1 : x + 1] = 0
+            runs = [(100, first), (100 + first * bay + way, bays - first)]
+            for left, count in runs if places else runs[:1]:
+                for x in range(left, left + count * bay + 1, bay):
+                    put_posts(picture, low, x, (0, 19, 23, 42))
                 for x in range(left, left + count * bay, bay):
                     for rack in np.flatnonzero(draws.random(2) < 0.7):
                         picture[low + 1 + 23 * rack : low + 20 + 23 * rack, x + 4 : x + bay - 4] = 0

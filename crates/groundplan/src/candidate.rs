@@ -18,8 +18,8 @@ pub const SQUARE: (f64, f64) = (0.3, 0.015);
 /// wall lines up along one angle, if at all.
 pub const WING: (f64, f64) = (1.0, 0.03);
 
-/// Drift bends halls, so that the two directions of one are square to so many degrees, and not to those above: then the weak
-/// one needs this share.
+/// Drift bends halls, so that the two directions of one are square to so many degrees only: then a weak one needs this share of
+/// the other.
 const BENT: (f64, f64) = (1.0, 0.1);
 
 /// A direction that may be one.
@@ -48,9 +48,8 @@ impl Candidate {
 
 /// A ground plan has two directions, be it only by the ends of its racks, and so has each wing of it: of the weak ones
 /// those square to a strong one that has no such other, or nearly so if they are longer. Beside a single one the second need
-/// not be square. Where no two
-/// strong ones are square to one another the plan may be skewed, and goods square to its racks are no second wing's
-/// ends: then each has such a weak one, or none has.
+/// not be square. Where no two strong ones are square to one another the plan may be skewed, and goods square to its racks are
+/// no second wing's ends: then each has such a weak one, or none has.
 pub fn seconds(weak: &[Candidate], strong: &[Candidate]) -> Vec<Candidate> {
     let share = |f: &Candidate, to: &Candidate| match (is_square(f.angle, to, SQUARE.0), strong.len()) {
         (true, _) => SQUARE.1,

@@ -173,13 +173,8 @@ fn crossed(
             if judged.is_empty() {
                 return Vec::new();
             }
-            let columns = Columns::new(
-                look,
-                &evidence.grid.frame,
-                [view, other],
-                row,
-                if view.pitch.is_some() { view.pitch_of(row) } else { common },
-            );
+            let pitch = if view.pitch.is_some() { view.pitch_of(row) } else { common };
+            let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, pitch);
             let (ways, open) = (columns.ways(), columns.open());
             let cross = |n: usize| {
                 let found = cross([view, other], row, (&columns, &ways, &open), &strips[n], aisles)?;

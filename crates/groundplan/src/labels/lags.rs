@@ -28,7 +28,7 @@ const PARTIAL: f64 = 6.0;
 /// Steps to either side of a lag over which it is the strongest.
 const TOP: usize = 4;
 /// Parts of a view have sides of so many steps: a few rows. Smaller ones of a map of 1600 megapixels take too much memory.
-const SIDE: i32 = 320;
+const PART: i32 = 320;
 
 /// How many pairs are so many steps apart, and how many less than that.
 pub struct Counts {
@@ -60,10 +60,11 @@ impl Counts {
         (FIRST..=LAST).map(|lag| [1, 2].map(|times| self.excess(times, lag))).collect()
     }
 
-    /// The pitch, metres, of those lags that may be one.
-    pub fn pitch(&self, all: &[[(f64, f64); 2]], may_be: impl Fn(usize) -> bool) -> Option<f64> {
+    /// The pitch, metres, of those of the lags that are looked at that may be one.
+    pub fn pitch(&self, may_be: &[bool]) -> Option<f64> {
+        let all = self.all();
         let clear = |n: usize| clear(all[n]);
-        let found: Vec<f64> = (0..all.len()).map(|n| if may_be(n) { clear(n) } else { 0.0 }).collect();
+        let found: Vec<f64> = (0..all.len()).map(|n| if may_be[n] { clear(n) } else { 0.0 }).collect();
         let top = |n: usize| found[n.saturating_sub(TOP)..].iter().take(2 * TOP + 1).all(|other| *other <= found[n]);
         let tops = (0..found.len()).filter(|&n| found[n] >= CONTRAST && top(n));
         let tops: Vec<(usize, f64)> = tops.map(|n| (FIRST + n, all[n][0].0)).collect();
@@ -77,18 +78,19 @@ pub fn clear([once, twice]: [(f64, f64); 2]) -> f64 {
     once.1.min(twice.1)
 }
 
-/// The pairs of places on lines by the part of a view that the first of them is in.
+/// The pairs of places on lines by the part of a view that the first of them is in. Lines are too far apart for more pairs at
+/// one lag than 16 bits hold.
 #[derive(Default)]
 pub struct Parts(BTreeMap<[i32; 2], Vec<u16>>);
 
 impl Parts {
     /// Counts the pairs on a line so many steps across; its places are steps along it, ascending.
     pub fn add(&mut self, across: i32, places: &[i32]) {
-        let part = |place: i32| [place, across].map(|steps| steps.div_euclid(SIDE));
+        let part = |place: i32| [place, across].map(|steps| steps.div_euclid(PART));
         let mut from = 0;
         for some in places.chunk_by(|one, other| part(*one) == part(*other)) {
             let reach =
-                places[from..].partition_point(|place| ((place - some[0]) as usize) < SIDE as usize + COUNTED.end);
+                places[from..].partition_point(|place| ((place - some[0]) as usize) < PART as usize + COUNTED.end);
             let counts = self.0.entry(part(some[0])).or_insert_with(|| vec![0; COUNTED.end]);
             pairs(&places[from..from + reach], some.len(), |lag, _| counts[lag] = counts[lag].saturating_add(1));
             from += some.len();
@@ -97,7 +99,7 @@ impl Parts {
 
     /// All pairs of the parts that some places along and across are in, steps.
     pub fn within(&self, along: [i32; 2], across: [i32; 2]) -> Counts {
-        let [[first, last], [low, high]] = [along, across].map(|ends| ends.map(|steps| steps.div_euclid(SIDE)));
+        let [[first, last], [low, high]] = [along, across].map(|ends| ends.map(|steps| steps.div_euclid(PART)));
         let parts = (first..=last).flat_map(|u| self.0.range([u, low]..=[u, high]));
         Counts::new(sum(parts.map(|(_, counts)| counts)))
     }
@@ -151,8 +153,8 @@ pub fn in_parts(length: f64) -> f64 {
     (length / STEP * PARTS).round() / PARTS * STEP
 }
 
-/// Calls `visit` with the lag of each pair of some places, ascending, and which two they are, of which the one is among so many
-/// first.
+/// Calls `visit` with the lag of each pair of some places, which ascend, and which two they are; the one is of so many of the
+/// lowest.
 pub fn pairs(places: &[i32], first: usize, mut visit: impl FnMut(usize, [usize; 2])) {
     let mut next = 0;
     for (n, one) in places.iter().enumerate().take(first) {
@@ -218,7 +220,7 @@ mod tests {
         assert_eq!(parts.within([0, 1999], [-5, -5]).pairs, all);
         assert_eq!(parts.all().pairs, all.iter().map(|count| 2.0 * count).collect::<Vec<_>>());
         // In the first part are the pairs of its places with all others.
-        let first = places.iter().filter(|place| **place < SIDE).count();
+        let first = places.iter().filter(|place| **place < PART).count();
         let mut own = vec![0.0; COUNTED.end];
         pairs(&places, first, |lag, _| own[lag] += 1.0);
         assert_eq!(parts.within([10, 10], [701, 702]).pairs, own);

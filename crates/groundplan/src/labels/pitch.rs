@@ -22,7 +22,7 @@ const FACE: (f64, f64) = (0.1, 0.5);
 /// Of what recurs along faces at least this share of the pairs has a row beside it from one to the other, and of those twice
 /// as far apart: fewer where most bays are empty, and next to none of what recurs across the rows.
 const ALONG: [f64; 2] = [0.15, 0.025];
-/// Parts of the view no further from a row, metres, are about it.
+/// What lies in parts of the view no further from a row, metres, is about it.
 const ABOUT: f64 = 4.0;
 /// A pitch recurs about a row where more than chance are so far apart by as many of its deviations.
 const RECURS: f64 = 2.0;
@@ -31,7 +31,7 @@ const RECURS: f64 = 2.0;
 pub struct Pitch {
     /// Of all together, metres.
     pub common: f64,
-    /// Where the view begins, metres.
+    /// Where the view, and with it the first part, begins, metres.
     start: [f64; 2],
     parts: Parts,
     /// Which lags recur along faces.
@@ -50,7 +50,7 @@ impl Pitch {
         if !(FIRST..=LAST).contains(&lag) || counts.excess(1, lag).1 >= RECURS {
             return Some(self.common);
         }
-        counts.pitch(&counts.all(), |n| self.along[n])
+        counts.pitch(&self.along)
     }
 }
 
@@ -89,7 +89,7 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<Pitch> {
     let is_along =
         |n: usize| (0..2).all(|twice| faces.excess(twice + 1, FIRST + n).0 >= ALONG[twice] * all[n][twice].0);
     let along: Vec<bool> = (0..all.len()).map(is_along).collect();
-    let common = counts.pitch(&all, |n| along[n])?;
+    let common = counts.pitch(&along)?;
     Some(Pitch { common, start: view.start, parts, along })
 }
 

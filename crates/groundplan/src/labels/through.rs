@@ -250,10 +250,8 @@ impl<'a> Through<'a> {
     fn is_way(&self, common: &Common, widths: &[Widths], is_told_within: impl Fn(usize) -> bool) -> bool {
         let [view, other] = self.rows[common.rows[0]].views;
         let known = &widths[other.direction];
-        let limit = match (
-            self.is_whole(common),
-            known.have(common.width() + BETWEEN_CELLS, view.pitch_of(self.rows[common.rows[0]].row)),
-        ) {
+        let is_as_wide = known.have(common.width() + BETWEEN_CELLS, view.pitch_of(self.rows[common.rows[0]].row));
+        let limit = match (self.is_whole(common), is_as_wide) {
             (false, _) => SOME,
             (true, _) if self.is_past_ends(common) => LIKELY,
             (true, true) => ALIKE,

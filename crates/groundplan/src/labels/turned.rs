@@ -48,7 +48,7 @@ pub struct Turned {
     /// The same by frames that stand alone, which counts where too few posts recur.
     framed: Option<f64>,
     /// By what recurs along its lines, about each row.
-    by_rows: Arc<Option<Pitch>>,
+    by_rows: Option<Arc<Pitch>>,
     /// Offsets of the direction's lines, ascending.
     pub offsets: Arc<Vec<f64>>,
     /// For each of those lines, whether structure lies on it in each column.
@@ -119,7 +119,7 @@ impl Turned {
             samples,
             pitch: None,
             framed: None,
-            by_rows: Arc::default(),
+            by_rows: None,
             offsets: Arc::default(),
             covered: Arc::default(),
             touched: Arc::default(),
@@ -170,7 +170,7 @@ impl Turned {
     pub fn recur(&mut self, evidence: &Evidence) {
         let found = pitch::find(evidence, self);
         self.pitch = found.as_ref().map(|found| found.common).or(self.framed);
-        self.by_rows = Arc::new(found);
+        self.by_rows = found.map(Arc::new);
         if evidence.recall.keeps() {
             self.keys = self.find_keys();
         }
@@ -178,13 +178,13 @@ impl Turned {
 
     /// From post to post along a row, metres: where posts recur in some rows of the view, as about that one.
     pub fn pitch_of(&self, row: &Row) -> Option<f64> {
-        self.by_rows.as_ref().as_ref().map_or(self.pitch, |pitch| pitch.about(row))
+        self.by_rows.as_ref().map_or(self.pitch, |pitch| pitch.about(row))
     }
 
     /// Lets go of all that is seen: what is left says where places are.
     pub fn let_go(&mut self) {
         self.unsee();
-        self.by_rows = Arc::default();
+        self.by_rows = None;
         (self.offsets, self.keys.1) = (Arc::default(), Arc::default());
         (self.covered, self.touched, self.lined) = (Arc::default(), Arc::default(), Arc::default());
         (self.panes, self.across) = (Arc::default(), Arc::default());
@@ -222,7 +222,7 @@ impl Turned {
             across: Arc::clone(&self.across),
             rows: Arc::clone(&self.rows),
             grounds: Grounds::default(),
-            by_rows: Arc::clone(&self.by_rows),
+            by_rows: self.by_rows.clone(),
             keys: (self.keys.0, Arc::clone(&self.keys.1)),
             ..*self
         })
