@@ -7,6 +7,9 @@ PYTHON ?= $(firstword $(foreach p,python3 python3.14 python3.13 python3.12 pytho
 bin := .venv/bin
 # PyO3 asks a Python what it builds for: always the same one, so that nothing is built twice.
 export PYO3_PYTHON := $(CURDIR)/.venv/bin/python
+# What is built here runs here: with the wider registers that nearly every x86-64 has, surveys take 5 percent less time.
+# Not with all that this processor has, as what was built may be carried to another; the bytes of a survey are the same.
+avx2 = $(if $(findstring "avx2",$(shell rustc --print cfg -C target-cpu=native 2>/dev/null)),-C target-cpu=x86-64-v3)
 # Nothing here runs make again, and cargo warns of a job server that it cannot reach.
 unexport MAKEFLAGS MFLAGS
 # Directories too, so that a file that was taken away counts as a change.
@@ -70,6 +73,6 @@ clean: ## Remove all that was built, .venv included
 	@command -v cargo >/dev/null || { echo "error: cargo is not on the PATH" >&2; \
 		echo "hint: install Rust 1.85 or later" >&2; exit 1; }
 	@echo "Building the Rust core ..."
-	@PATH="$(CURDIR)/$(bin):$$PATH" MATURIN_PEP517_ARGS=--locked $(bin)/python -m pip install --quiet --no-input \
+	@PATH="$(CURDIR)/$(bin):$$PATH" RUSTFLAGS="$${RUSTFLAGS-$(avx2)}" MATURIN_PEP517_ARGS=--locked $(bin)/python -m pip install --quiet --no-input \
 		--disable-pip-version-check --no-deps --no-build-isolation --editable .
 	@touch $@
