@@ -1,5 +1,5 @@
 //! Bends: a passage ends where its walls turn, and leads on along another direction to a way that runs askew to it; the walls
-//! from there on are too short to be lines.
+//! from there on are too short to be lines. What leads there may be no longer than what opens into a way.
 
 use super::barriers;
 use super::beside::{Beside, placed};
@@ -7,10 +7,12 @@ use super::corridors::{self, ASKEW, Strip};
 use super::junctions;
 use super::known::{Known, Led};
 use super::meeting::{LEAST_SINE, Meeting, of_each};
+use super::openings::{self, Opening};
 use super::shut::{inner, sign};
 use super::stretches;
 use super::turned::Turned;
 use crate::ends::{around, holds, sorted, wider};
+use crate::parameters::Parameters;
 use std::ops::Range;
 
 /// It turns no farther from where the sides of the known way end than so many of its widths, and is tried in steps of so
@@ -31,7 +33,7 @@ const WALLED: f64 = 0.85;
 const WALL: f64 = 0.1;
 
 /// The ways with those that they lead to round a bend; none where there are no such.
-pub fn with(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Option<Vec<Strip>> {
+pub fn with(views: &[Turned], strips: &[Strip], meetings: &[Meeting], parameters: &Parameters) -> Option<Vec<Strip>> {
     // One that it leads along, one that it turns to and one of the way that it meets.
     if views.len() < 3 {
         return None;
@@ -39,19 +41,42 @@ pub fn with(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Option<
     let mut known = Known::new(views, strips);
     let placed = placed(views, strips.iter().map(Strip::place));
     let widest = corridors::widest(strips);
-    for (n, met) in of_each(meetings, strips.len()).into_iter().enumerate() {
-        let own = &strips[n];
+    let bend = |own: &Strip, side: usize| {
         let from = &views[own.direction];
-        for side in [0, 1] {
-            if junctions::is_met(from, own, n, side, met.iter().map(|&m| &meetings[m])) {
-                continue;
+        let legs = views.iter().flat_map(|view| [-1.0, 1.0].map(|to| (view, to)));
+        let bends = legs
+            .filter_map(|(view, to)| Bend { views, strips, placed: &placed, widest, own, from, side, view, to }.best());
+        bends.min_by(|one, two| one.off.total_cmp(&two.off)).map(|found| found.led)
+    };
+    for (n, met) in of_each(meetings, strips.len()).into_iter().enumerate() {
+        let is_met = |side| {
+            junctions::is_met(&views[strips[n].direction], &strips[n], n, side, met.iter().map(|&m| &meetings[m]))
+        };
+        for side in (0..2).filter(|&side| !is_met(side)) {
+            if let Some(led) = bend(&strips[n], side) {
+                known.add(led);
             }
-            let legs = views.iter().flat_map(|view| [-1.0, 1.0].map(|to| (view, to)));
-            let bends = legs.filter_map(|(view, to)| {
-                Bend { views, strips, placed: &placed, widest, own, from, side, view, to }.best()
-            });
-            if let Some(found) = bends.min_by(|one, two| one.off.total_cmp(&two.off)) {
-                known.add(found.led);
+        }
+    }
+    for strip in strips {
+        // Of what opens into it what lies in no other.
+        let is_new = |way: &Strip| {
+            let ends = [way.along[0], f64::midpoint(way.along[0], way.along[1]), way.along[1]];
+            let points = ends.map(|u| views[way.direction].to_map([u, way.middle()]));
+            !views.iter().any(|its| {
+                points.map(|point| its.place(point)).iter().any(|&[u, v]| {
+                    let mut near = placed[its.direction].touching([u; 2], [v; 2]).into_iter().map(|n| &strips[n]);
+                    near.any(|other| other != strip && holds(other.along, u) && holds(other.across, v))
+                })
+            })
+        };
+        let is_leg = |opening: &Opening| opening.held.iter().all(|held| *held >= LENGTH[0]) && is_new(&opening.way);
+        for Opening { way, middle, .. } in openings::of(views, strip, parameters).into_iter().filter(is_leg) {
+            let side = usize::from(middle < way.along[0]);
+            if let Some(led) = bend(&way, side) {
+                known.add(led);
+                let middles = way.along;
+                known.add(Led { way, middles });
             }
         }
     }

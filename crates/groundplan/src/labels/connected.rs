@@ -20,8 +20,10 @@ const OTHERS: usize = 2;
 /// no such others run beside it something stands along both its sides: else it is what furniture leaves of a room.
 const SHUT: f64 = 4.5;
 /// A corridor that meets one other goes on beyond it, on one side for so many times its width and so far, metres, or on
-/// both together for as many times and so far: or it is a niche at the other's side.
+/// both together for as many times and so far: or it is a niche at the other's side. Of what leads into the unseen less is
+/// enough on the one.
 const NICHE: (f64, f64) = (1.5, 2.5);
+const UNSEEN: (f64, f64) = (0.5, 2.0);
 const NICHES: (f64, f64) = (2.2, 4.0);
 /// Two niches face each other across a corridor where both together are less than this share of its length, the one is no
 /// less than that share of the other, neither goes on as far as both must, and both are shut.
@@ -40,7 +42,9 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
         let leads = |n: usize| {
             let is_niche = |&m: &usize| {
                 let [one, two] = arms(views, &strips, &meetings[m], n);
-                !goes_on(n, one.max(two).min(one + two + reach(&meetings[m], n)), NICHE)
+                let longer = usize::from(two > one);
+                let least = if shut::is_unseen(views, &strips[n], longer) { UNSEEN } else { NICHE };
+                !goes_on(n, one.max(two).min(one + two + reach(&meetings[m], n)), least)
                     && !goes_on(n, one + two, NICHES)
             };
             let is_long = |widths: f64| strips[n].length() >= RECURS.max(widths * strips[n].width());

@@ -7,6 +7,7 @@ use super::connected;
 use super::corridors::{self, Strip};
 use super::family;
 use super::gates::{crossing, leading_across};
+use super::led;
 use super::look::Look;
 use super::rows::{self, Row};
 use super::sections::{Columns, Free, WIDTH};
@@ -59,11 +60,14 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], mut stri
         crossed = by_strip(&known, strips.len());
     }
     // What is long enough for a way by itself and crosses no row that is known is no bay of one.
-    let is_alone = |strip: &Strip| !strip.is_short() && sided::is_sided(&views[strip.direction], strip);
-    let left = |(strip, crossed): (Strip, Vec<Crossed>)| {
-        if crossed.is_empty() && is_alone(&strip) { vec![strip] } else { ways(strip, crossed) }
+    let is_alone = |strip: &Strip| {
+        !strip.is_short()
+            && (sided::is_sided(&views[strip.direction], strip) || led::is_before_wall(views, strip, &strips, &placed))
     };
-    strips.into_iter().zip(crossed).flat_map(left).collect()
+    let left = |(strip, crossed): (&Strip, Vec<Crossed>)| {
+        if crossed.is_empty() && is_alone(strip) { vec![strip.clone()] } else { ways(strip, crossed) }
+    };
+    strips.iter().zip(crossed).flat_map(left).collect()
 }
 
 /// True when a strip leads on between two sides for longer than a row is deep, without a way that crosses it: no bays do.
@@ -302,11 +306,11 @@ fn cross(
 }
 
 /// A strip's pieces between the rows that it has no way through.
-fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
+fn ways(strip: &Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
     let expected = by_chance(&crossed);
     let are_ends = crossed.iter().all(|row| row.at_end() && row.way);
     let least = if are_ends { AT_ENDS } else { EXPECTED.1 };
-    let is_told = || are_ends && is_long_before(&strip, &crossed) || are_barred(&crossed);
+    let is_told = || are_ends && is_long_before(strip, &crossed) || are_barred(&crossed);
     if strip.bays && expected >= least && !is_told() {
         return Vec::new();
     }
@@ -322,7 +326,7 @@ fn ways(strip: Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
         crossed.retain(|c| !c.at_end());
     }
     if crossed.is_empty() {
-        return vec![strip];
+        return vec![strip.clone()];
     }
     crossed.sort_by(|a, b| a.along[0].total_cmp(&b.along[0]));
     let is_way = crossed.iter().any(|c| c.way);
@@ -421,7 +425,7 @@ mod tests {
 
     /// The pieces of a strip that crosses rows.
     fn pieces(rows: &[Crossed]) -> Vec<[f64; 2]> {
-        ways(strip(), rows.to_vec()).into_iter().map(|piece| piece.along).collect()
+        ways(&strip(), rows.to_vec()).into_iter().map(|piece| piece.along).collect()
     }
 
     #[test]
@@ -429,7 +433,7 @@ mod tests {
         let is_way = |passes: Passes, free: f64| {
             let free = Some(Free { free, places: 20.0 });
             let crossed = [[1.5, 6.5], [6.5, 11.5]].map(|along| Crossed { passes, free, ..row(along, true) });
-            !ways(Strip { bays: true, ..strip() }, crossed.to_vec()).is_empty()
+            !ways(&Strip { bays: true, ..strip() }, crossed.to_vec()).is_empty()
         };
         assert!(is_way(Passes::End, 1.0) && !is_way(Passes::Within, 1.0));
         assert!(!is_way(Passes::End, 4.0));
@@ -440,7 +444,7 @@ mod tests {
         let is_way = |score: f64, passes: Passes| {
             let one = Crossed { passes: Passes::End, ..row([1.5, 6.5], true) };
             let two = Crossed { passes, ..row([6.5, 39.0], true) };
-            !ways(Strip { bays: true, score, ..strip() }, vec![one, two]).is_empty()
+            !ways(&Strip { bays: true, score, ..strip() }, vec![one, two]).is_empty()
         };
         // Through a passage in the wall one does not lie at a side.
         assert!(is_way(40.0, Passes::Before) && is_way(29.0, Passes::Before));
@@ -455,7 +459,7 @@ mod tests {
                 sign,
                 ..row(along, true)
             });
-            !ways(Strip { bays: true, ..strip() }, vec![one, two, row([11.5, 16.5], false)]).is_empty()
+            !ways(&Strip { bays: true, ..strip() }, vec![one, two, row([11.5, 16.5], false)]).is_empty()
         };
         let [alone, seldom, often] = [0, 1, 2].map(|closed| Sign::Bar { closed, ends: 4 * closed.min(1) });
         assert!(is_way([alone; 2]) && is_way([alone, seldom]));

@@ -1,15 +1,19 @@
-//! Ways whose sides are no lines, and what others tell of them: pieces between lines that they lie over, and ways that lead
-//! there.
+//! What others tell of ways whose sides are no lines, or that may be bays: pieces between lines that they lie over, and ways
+//! that lead there.
 
 use super::beside::Beside;
 use super::corridors::{self, Strip};
+use super::sided;
 use super::turned::Turned;
-use crate::ends::{around, holds, overlap, wider};
+use crate::ends::{around, holds, overlap, sorted, wider};
 
 /// A way opens into another when its end is so near to the other's side, metres.
 const MOUTH: f64 = 3.0;
 /// A way lies over a piece when it shares more than this of its own length and width.
 const OVER: f64 = 0.5;
+/// So many ways that end at a strip tell that it is one, and none that goes on past it by so much, metres.
+const SEVERAL: usize = 2;
+const SIDE: f64 = 0.6;
 /// A little more than rounding may move a place, metres.
 const SLACK: f64 = 1e-3;
 /// It goes on beyond one over floor that is free but for this share.
@@ -46,12 +50,43 @@ pub fn is_opened_into(views: &[Turned], way: &Strip, strips: &[Strip], placed: &
             holds(way.along, u) && (v - way.middle()).abs() <= way.width() / 2.0 + MOUTH
         })
     };
+    leading(views, way, placed).any(|(its, n)| opens(its, &strips[n]))
+}
+
+/// The ways of other directions that reach a way or what lies a mouth beside it, by their numbers.
+fn leading<'a>(
+    views: &'a [Turned],
+    way: &Strip,
+    placed: &'a [Beside],
+) -> impl Iterator<Item = (&'a Turned, usize)> + use<'a> {
+    let own = &views[way.direction];
     let reached = own.rectangle(way.along, wider(way.across, MOUTH));
-    views.iter().filter(|its| own.sine(its) > corridors::ASKEW).any(|its| {
+    views.iter().filter(|its| own.sine(its) > corridors::ASKEW).flat_map(move |its| {
         let [along, across] = [0, 1].map(|axis| around(reached.iter().map(|&corner| its.place(corner)[axis])));
         let near = placed[its.direction].touching(wider(along, SLACK), wider(across, SLACK));
-        near.into_iter().any(|n| opens(its, &strips[n]))
+        near.into_iter().map(move |n| (its, n))
     })
+}
+
+/// True when several long ways end at a strip, all on one side of it, and something stands along the other.
+pub fn is_before_wall(views: &[Turned], strip: &Strip, strips: &[Strip], placed: &[Beside]) -> bool {
+    let own = &views[strip.direction];
+    let mut ending = [0, 0];
+    for (its, n) in leading(views, strip, placed) {
+        let way = &strips[n];
+        let ends = way.along.map(|end| own.place(its.to_map([end, way.middle()])));
+        let [from, to] = sorted(ends.map(|end| end[1]));
+        let goes_past = from < strip.across[0] - SIDE && to > strip.across[1] + SIDE;
+        if way.bays || way.is_short() || !holds(strip.along, own.crossing(its, strip.middle(), way.middle())[1]) {
+            continue;
+        }
+        if goes_past {
+            return false;
+        }
+        ending[usize::from(f64::midpoint(from, to) > strip.middle())] += 1;
+    }
+    let sided = sided::are_sided(own, strip, strip.along);
+    (0..2).any(|side| ending[side] >= SEVERAL && ending[1 - side] == 0 && sided[1 - side])
 }
 
 /// True when another of its direction ends in a way, as where both are one that bends: no farther from the way's end than

@@ -21,6 +21,9 @@ const SHUT: f64 = 1.0;
 /// What closes it is this deep, metres, and lies across this share of its width.
 const DEEP: f64 = 0.4;
 const ACROSS: f64 = 0.5;
+/// Where it goes on over what was not seen, from so far beyond its end to so far, metres, more than this share is no floor.
+const BEYOND: (f64, f64) = (0.2, 1.2);
+const FLOOR: f64 = 0.5;
 /// A thin wall stands in so many columns at most, where a border of cells parts it.
 const THIN: i64 = 2;
 
@@ -35,6 +38,20 @@ pub fn is_shut(views: &[Turned], strip: &Strip, side: usize) -> bool {
     let end = strip.along[side];
     let [from, to] = [end - SHUT, end + SHUT].map(|u| view.column(u));
     closed(view, strip, side, SHUT).is_some() || barriers::across(view, strip.across, from..to + 1).any()
+}
+
+/// True when nothing was seen beyond one of a strip's ends: neither what shuts it nor floor.
+pub fn is_unseen(views: &[Turned], strip: &Strip, side: usize) -> bool {
+    let view = &views[strip.direction];
+    let beyond = sorted([BEYOND.0, BEYOND.1].map(|metres| strip.along[side] + sign(side) * metres));
+    let [low, high] = inner(strip);
+    view.mean_blocked(view.columns(beyond), low, high) > FLOOR && !is_shut(views, strip, side)
+}
+
+/// True when something stands across a strip in a column, or in one beside it.
+pub fn is_shut_at(view: &Turned, strip: &Strip, column: usize) -> bool {
+    let last = view.size[0] - 1;
+    is_hit(view, column.saturating_sub(THIN as usize).min(last)..(column + THIN as usize).min(last) + 1, inner(strip))
 }
 
 /// Where a strip ends: at what closes it near one of its ends, or no further off than bays are long, where one of its sides

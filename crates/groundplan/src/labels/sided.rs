@@ -3,6 +3,7 @@
 
 use super::beside::Beside;
 use super::corridors::{ALIKE, Strip};
+use super::family::LED_TO;
 use super::racks::WAY_IN;
 use super::rows::{self, DEPTH, SAME};
 use super::runs::{close, runs};
@@ -45,7 +46,7 @@ pub fn is_sided_by_bays(view: &Turned, strip: &Strip, along: [f64; 2], beside: [
 }
 
 /// Along which of a strip's sides something that is not free stands between two places.
-fn are_sided(view: &Turned, strip: &Strip, along: [f64; 2]) -> [bool; 2] {
+pub fn are_sided(view: &Turned, strip: &Strip, along: [f64; 2]) -> [bool; 2] {
     let columns = view.column(along[0])..view.column(along[1]);
     let [low, high] = strip.across;
     let (within, beyond) = (SIDE.0 * strip.width(), SIDE.1 * strip.width());
@@ -81,13 +82,14 @@ pub fn is_within_outline(view: &Turned, strips: &[Strip], placed: &[Beside], n: 
         && near.into_iter().any(|m| m != n && is_behind(&strips[m]))
 }
 
-/// True when another that is like it runs beside a strip, as far as goods do not hide the shorter of the two, with a row
+/// True when another that is as long runs beside a strip, as far as goods do not hide the shorter of the two, with a row
 /// between them of which several pieces stand, and ways lead between these from the one to the other: be there walls at all
 /// ends, rooms are not so. Of all it is known where they lie.
 pub fn is_at_row(view: &Turned, strips: &[Strip], placed: &[Beside], n: usize) -> bool {
     let own = &strips[n];
     let is_like = |other: &&Strip| {
-        own.is_as_wide(other) && overlap(own.along, other.along) >= (1.0 - ALIKE) * own.length().min(other.length())
+        own.width().min(other.width()) >= LED_TO * own.width().max(other.width())
+            && overlap(own.along, other.along) >= (1.0 - ALIKE) * own.length().min(other.length())
     };
     let near = placed[own.direction].touching(own.along, wider(own.across, DEPTH.1));
     near.into_iter().map(|m| &strips[m]).filter(is_like).any(|other| {

@@ -10,6 +10,7 @@ use super::cornered;
 use super::corridors::{self, Strip};
 use super::crossed;
 use super::faced;
+use super::frontiers;
 use super::gates::{self, Gates};
 use super::heads;
 use super::joined;
@@ -237,7 +238,10 @@ impl Plan {
         if let Some(more) = cornered::with(views, &plan.strips, evidence.parameters) {
             plan = Self::new(views, more, threads);
         }
-        if let Some(more) = bends::with(views, &plan.strips, &plan.meetings) {
+        if let Some(more) = frontiers::with(views, &plan.strips, evidence.parameters) {
+            plan = Self::new(views, more, threads);
+        }
+        if let Some(more) = bends::with(views, &plan.strips, &plan.meetings, evidence.parameters) {
             plan = Self::new(views, more, threads);
         }
         plan.racks = plan.find_racks(views, on_legs, &standing, threads);

@@ -1,0 +1,50 @@
+//! Ways that end at a frontier, between what was seen and what was not (Yamauchi 1997), before they are long enough for one:
+//! past the ends of two rows a robot saw as far between them as its sensor reaches, and went on.
+
+use super::beside::placed;
+use super::corridors::Strip;
+use super::openings::{self, DEEP, END, Opening};
+use super::turned::Turned;
+use crate::ends::{both, overlap, wider};
+use crate::parameters::Parameters;
+
+/// One side is held over so much of what was seen.
+const HELD: f64 = 0.6;
+/// What shares more than this of its width with a known way is that one.
+const SHARED: f64 = 0.25;
+
+/// The ways with those that end at frontiers and are as wide as others; none where there are no such.
+pub fn with(views: &[Turned], strips: &[Strip], parameters: &Parameters) -> Option<Vec<Strip>> {
+    let mut ways = strips.to_vec();
+    let mut placed = placed(views, strips.iter().map(Strip::place));
+    let is_alike = |way: &Strip| strips.iter().any(|one| one.direction == way.direction && one.is_as_wide(way));
+    for passing in strips {
+        let found = openings::of(views, passing, parameters).into_iter().filter(leads_on);
+        for Opening { mut way, middle, .. } in found.filter(|opening| is_alike(&opening.way)) {
+            way.along = both(way.along, [middle; 2]);
+            let reached = wider(way.along, passing.width() / 2.0);
+            let shares = |n: &usize| overlap(ways[*n].across, way.across) > SHARED * way.width().min(ways[*n].width());
+            let near = placed[way.direction].touching(reached, way.across).into_iter();
+            let n = match near.filter(shares).collect::<Vec<usize>>()[..] {
+                [] => {
+                    ways.push(way);
+                    ways.len() - 1
+                }
+                // Another one ends there, in line.
+                [n] if (0..2).all(|side| (ways[n].across[side] - way.across[side]).abs() <= END) => {
+                    ways[n].along = both(ways[n].along, way.along);
+                    n
+                }
+                _ => continue,
+            };
+            placed[ways[n].direction].add(n, ways[n].along, ways[n].across);
+        }
+    }
+    (ways != strips).then_some(ways)
+}
+
+/// True when nothing ends what opens, between two sides of which one is no more than the end of a row.
+fn leads_on(opening: &Opening) -> bool {
+    let [low, high] = opening.held;
+    opening.is_frontier && low.min(high) >= END && low.max(high) >= DEEP.0.max(HELD * opening.way.length())
+}

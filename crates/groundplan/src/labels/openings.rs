@@ -1,0 +1,186 @@
+//! What opens into a way between the ends of two rows or of two walls, as far as it was seen: a place to turn into.
+
+use super::corridors::Strip;
+use super::gates::square_to;
+use super::runs::runs;
+use super::sections::WIDTH;
+use super::shut;
+use super::stretches;
+use super::turned::Turned;
+use crate::ends::{sorted, wider};
+use crate::parameters::Parameters;
+use std::ops::Range;
+
+/// It is so deep at least, metres, and so many times as deep as wide; and is looked into no farther than that.
+pub const DEEP: (f64, f64) = (2.0, 0.5);
+const LOOK: f64 = 8.0;
+/// The rows beside it end no farther than this from the side of what leads past them, and its sides are as near to their
+/// corners, metres.
+pub const END: f64 = 0.5;
+const CORNER: f64 = 0.3;
+/// Where the first bay of a row is empty that is so deep at most, in depths of what opens.
+const SHALLOW: f64 = 0.5;
+/// What is no wider than so many pitches may be a bay.
+const BAY: f64 = 1.03;
+/// A cell of which more than this share is not free is none of it.
+const TAKEN: f64 = 0.5;
+/// At a frontier something stands in no more than this share of it.
+const SHUT: f64 = 0.3;
+/// From so far within a side to so far beyond, metres, something stands over so much of what holds it.
+const SIDE: f64 = 0.3;
+const SIDED: f64 = 0.4;
+/// What lies from so far beyond a side to so far, metres, is not free where it is held.
+const BESIDE: (f64, f64) = (0.1, 0.5);
+
+/// What opens into a way.
+pub struct Opening {
+    /// From that one's side as far as is free.
+    pub way: Strip,
+    /// Where that one's middle lies, along.
+    pub middle: f64,
+    /// Over so much of that each of its sides is held, metres.
+    pub held: [f64; 2],
+    /// It ends at a frontier: nothing stands there.
+    pub is_frontier: bool,
+}
+
+/// What opens into a way from one side or the other, square to it.
+pub fn of(views: &[Turned], way: &Strip, parameters: &Parameters) -> Vec<Opening> {
+    let view = &views[way.direction];
+    let Some(other) = square_to(views, way.direction) else { return Vec::new() };
+    [0, 1].into_iter().flat_map(|side| Passing { view, other, way, side, parameters }.openings()).collect()
+}
+
+/// A way past the ends of rows on one of its sides.
+struct Passing<'a> {
+    view: &'a Turned,
+    other: &'a Turned,
+    way: &'a Strip,
+    side: usize,
+    parameters: &'a Parameters,
+}
+
+impl Passing<'_> {
+    fn openings(&self) -> Vec<Opening> {
+        let columns = self.free();
+        let depths = self.depths(&columns);
+        let deep: Vec<bool> = depths.iter().map(|depth| self.metres(*depth) >= DEEP.0).collect();
+        let opens = |&(from, to): &(usize, usize)| {
+            self.is_wide_as_way(to - from) && self.has_corners(&columns, &depths, from..to)
+        };
+        let open = runs(&deep, true).into_iter().filter(opens);
+        open.filter_map(|(from, to)| self.opening(columns.start + from..columns.start + to, &depths[from..to]))
+            .collect()
+    }
+
+    /// So many cells, metres.
+    fn metres(&self, cells: usize) -> f64 {
+        cells as f64 * self.view.cell
+    }
+
+    /// It is looked into so many cells deep.
+    fn most(&self) -> usize {
+        (LOOK / self.view.cell) as usize
+    }
+
+    /// The columns in which the way is free, with those beyond its ends.
+    fn free(&self) -> Range<usize> {
+        let [low, high] = shut::inner(self.way);
+        let most = self.parameters.labels_max_width;
+        let [first, last] = self.way.along.map(|u| self.view.column(u));
+        let [from, to] = wider(self.way.along, most).map(|u| self.view.column(u));
+        let taken = |columns: Range<usize>| self.view.some_blocked(columns, low, high);
+        let before = taken(from..first).iter().rev().take_while(|share| **share <= TAKEN).count();
+        let after = taken(last..to + 1).iter().take_while(|share| **share <= TAKEN).count();
+        first - before..last + after
+    }
+
+    /// From so many cells beyond the side to one more.
+    fn beyond(&self, cells: usize) -> [f64; 2] {
+        let outwards = if self.side == 0 { -1.0 } else { 1.0 };
+        sorted([cells, cells + 1].map(|cells| self.way.across[self.side] + outwards * self.metres(cells)))
+    }
+
+    /// How many cells beyond the side are free of each of some columns.
+    fn depths(&self, columns: &Range<usize>) -> Vec<usize> {
+        let mut depths = vec![self.most(); columns.len()];
+        let mut open = columns.len();
+        for cells in 0..self.most() {
+            if open == 0 {
+                break;
+            }
+            let [low, high] = self.beyond(cells);
+            let taken = self.view.some_blocked(columns.clone(), low, high);
+            for (depth, _) in depths.iter_mut().zip(taken).filter(|(depth, share)| **depth > cells && *share > TAKEN) {
+                *depth = cells;
+                open -= 1;
+            }
+        }
+        depths
+    }
+
+    /// So many columns are as wide as a way, and wider than a bay of a row along the way past them.
+    fn is_wide_as_way(&self, columns: usize) -> bool {
+        let width = self.metres(columns);
+        (self.parameters.labels_min_width.max(WIDTH.0)..=self.parameters.labels_max_width).contains(&width)
+            && self.view.pitch.is_none_or(|pitch| width > BAY * pitch)
+    }
+
+    /// True when at either side of some columns, of which the way's are given, a row ends, be its first bay empty, or the way
+    /// itself does, at a wall.
+    fn has_corners(&self, all: &Range<usize>, depths: &[usize], open: Range<usize>) -> bool {
+        let near = (CORNER / self.view.cell).ceil() as usize;
+        let least = END.max(SHALLOW * self.metres(median(&depths[open.clone()])));
+        let is_corner = |beside: Range<usize>, end: usize| match beside.is_empty() {
+            true => shut::is_shut_at(self.view, self.way, end),
+            false => depths[beside].iter().any(|depth| self.metres(*depth) <= least),
+        };
+        is_corner(open.start.saturating_sub(near)..open.start, all.start)
+            && is_corner(open.end..(open.end + near).min(depths.len()), all.end)
+    }
+
+    /// What opens through some columns, where it is deep enough.
+    fn opening(&self, columns: Range<usize>, depths: &[usize]) -> Option<Opening> {
+        let cells = median(depths);
+        let (depth, width) = (self.metres(cells), self.metres(columns.len()));
+        if depth < DEEP.1 * width {
+            return None;
+        }
+        let stands = |(column, depth): (usize, &usize)| {
+            let [low, high] = wider(self.beyond(*depth), self.view.cell);
+            self.view.occupied(column, low, high) > 0.0
+        };
+        let shut = columns.clone().zip(depths).filter(|&at| stands(at)).count();
+        let sides = [columns.start, columns.end].map(|column| self.view.along(column));
+        let end = self.beyond(cells)[usize::from(self.side == 0)];
+        let corners = [[sides[0], self.way.across[self.side]], [sides[1], end]];
+        let [one, two] = corners.map(|place| self.other.place(self.view.to_map(place)));
+        let [along, across] = [0, 1].map(|axis| sorted([one[axis], two[axis]]));
+        let middle = self.other.place(self.view.to_map([sides[0], self.way.middle()]))[0];
+        Some(Opening {
+            way: stretches::ragged(self.other, along, across, depth),
+            middle,
+            held: self.held(along, across),
+            is_frontier: cells < self.most() && shut as f64 <= SHUT * depths.len() as f64,
+        })
+    }
+
+    /// Over how much of it each side is held, metres: something stands there and what lies beyond is not free.
+    fn held(&self, along: [f64; 2], across: [f64; 2]) -> [f64; 2] {
+        let columns = self.other.border(along[0])..self.other.border(along[1]);
+        [(across[0], -1.0), (across[1], 1.0)].map(|(side, outwards)| {
+            let [low, high] = sorted([BESIDE.0, BESIDE.1].map(|metres| side + outwards * metres));
+            let held = self.other.blocked_where(columns.clone(), low, high, |share| share > TAKEN);
+            let held = held.count(0..columns.len()) as f64 * self.other.cell;
+            let stands = self.other.share_touched(columns.clone(), side - SIDE, side + SIDE) * (along[1] - along[0]);
+            if stands >= SIDED * held { held } else { 0.0 }
+        })
+    }
+}
+
+/// Of some numbers that which half of the others are no more than.
+fn median(numbers: &[usize]) -> usize {
+    let mut in_order = numbers.to_vec();
+    in_order.sort_unstable();
+    in_order[in_order.len() / 2]
+}
