@@ -38,23 +38,24 @@ class Plan:
         return self.canvas.picture
 
 
-def joined_by_a_bend(turn: float, leg: float, wall: float | None = None) -> Picture:
+def joined_by_a_bend(turn: float, leg: float, wall: float | None = None, first: float = 240) -> Picture:
     """A hall of four aisles, and one of three that is turned; a passage leads from the one, bends, and after so many
-    pixels between walls opens into the side of the other's last aisle. A thin wall may close it, askew by so much."""
+    pixels between walls opens into the side of the other's last aisle. A thin wall may close it, askew by so much. From
+    the first hall's wall to the bend's middle it is as long as is asked for."""
     floors, racks = Plan(1250, 1000), Plan(1250, 1000)
     floors.floor((20, 340), 0, 400, 360)
     for y in (400, 500, 600):
         racks.floor((80, y), 0, 280, 40)
     along = np.array([np.cos(np.radians(turn)), np.sin(np.radians(turn))])
     across = np.array([-along[1], along[0]])
-    bend = np.array([660, 520])
+    bend = np.array([420 + first, 520])
     corner = bend - 200 * along - (320 + leg) * across
 
     def at(u: float, v: float) -> tuple[float, float]:
         x, y = corner + u * along + v * across
         return float(x), float(y)
 
-    floors.floor((400, 490), 0, 260 + 30 * np.tan(np.radians(90 - turn) / 2), 60)
+    floors.floor((400, 490), 0, 20 + first + 30 * np.tan(np.radians(90 - turn) / 2), 60)
     floors.floor(at(0, 0), turn, 500, 320)
     floors.floor(at(170, 300), turn, 60, 20 + leg + 30 * np.tan(np.radians(90 - turn) / 2))
     for v in (80, 200):
@@ -74,6 +75,15 @@ def test_a_passage_leads_round_its_bend_into_the_wing(turn: float, leg: float) -
     assert sorted(junction["type"] for junction in junctions) == ["L"] * 9 + ["T"] * 8
     bends = [junction for junction in junctions if np.hypot(*np.subtract(junction["at"], (33, 26))) < 0.75]
     assert [junction["type"] for junction in bends] == ["L"]
+
+
+@pytest.mark.parametrize("first", [50, 70, 90])
+@pytest.mark.parametrize(("turn", "leg"), [(40, 70), (52, 90)])
+def test_a_passage_that_turns_soon_on_both_sides_is_one(turn: float, leg: float, first: float) -> None:
+    survey = groundplan.survey(joined_by_a_bend(turn, leg, first=first), resolution=RESOLUTION)
+    bend = ((420 + first) * RESOLUTION, 26)
+    near = [junction for junction in survey.of_kind("junction") if np.hypot(*np.subtract(junction["at"], bend)) < 0.75]
+    assert [junction["type"] for junction in near] == ["L"]
 
 
 @pytest.mark.parametrize("wall", [0, 30, 45])

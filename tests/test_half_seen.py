@@ -62,3 +62,42 @@ def test_where_something_stands_behind_the_last_row_there_is_no_way(blocks: int)
         picture[back + 20 : back + AISLE, middle - 30 : middle - 26] = 0
     survey = groundplan.survey(picture, resolution=RESOLUTION)
     assert len([way for way in survey.of_kind("corridor") if way["width"] < 3.3]) == 2
+
+
+def mouths(seen: int, closed: bool = False) -> Picture:
+    """Four rows of 15 m between two ways of 3.6 m, of whose five aisles the second and the fourth were seen for so many
+    pixels from either way, or are closed there."""
+    length = 300
+    picture = walled(length + 2 * CROSS, 5 * AISLE + 4 * DEPTH)
+    left = 20 + CROSS
+    for row in range(4):
+        low = 20 + AISLE + row * (AISLE + DEPTH)
+        picture[low : low + DEPTH, left : left + length] = 0
+    for aisle in (1, 3):
+        low = 20 + aisle * (AISLE + DEPTH)
+        if closed:
+            picture[low : low + AISLE, left + seen - 4 : left + length - seen + 4] = 0
+        # Of the rows beside it no more was seen from there either.
+        picture[low - DEPTH + 3 : low + AISLE + DEPTH - 3, left + seen : left + length - seen] = 205
+        for face in (low - DEPTH, low + AISLE + DEPTH - 3):
+            picture[face : face + 3, left : left + length] = 0
+    return picture
+
+
+@pytest.mark.parametrize("turns", range(4))
+@pytest.mark.parametrize("seen", [44, 56, 70])
+def test_an_aisle_that_was_seen_as_far_as_a_sensor_reaches_opens_into_the_way_past_it(seen: int, turns: int) -> None:
+    picture = np.ascontiguousarray(np.rot90(mouths(seen), turns))
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 6
+
+
+@pytest.mark.parametrize("seen", [44, 56, 70])
+def test_what_something_closes_that_far_from_a_way_is_a_niche(seen: int) -> None:
+    survey = groundplan.survey(mouths(seen, closed=True), resolution=RESOLUTION)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 2
+
+
+def test_where_next_to_nothing_was_seen_between_two_rows_no_way_is_known() -> None:
+    survey = groundplan.survey(mouths(16), resolution=RESOLUTION)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 2
