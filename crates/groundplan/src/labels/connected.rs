@@ -20,8 +20,8 @@ const OTHERS: usize = 2;
 /// no such others run beside it something stands along both its sides: else it is what furniture leaves of a room.
 const SHUT: f64 = 4.5;
 /// A corridor that meets one other goes on beyond it, on one side for so many times its width and so far, metres, or on
-/// both together for as many times and so far: or it is a niche at the other's side. Of what leads into the unseen less is
-/// enough on the one.
+/// both together for as many times and so far: or it is a niche at the other's side. Of what has no lines for its sides and
+/// leads into the unseen less is enough on the one.
 const NICHE: (f64, f64) = (1.5, 2.5);
 const UNSEEN: (f64, f64) = (0.5, 2.0);
 const NICHES: (f64, f64) = (2.2, 4.0);
@@ -42,10 +42,11 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
         let leads = |n: usize| {
             let is_niche = |&m: &usize| {
                 let [one, two] = arms(views, &strips, &meetings[m], n);
-                let longer = usize::from(two > one);
-                let least = if shut::is_unseen(views, &strips[n], longer) { UNSEEN } else { NICHE };
-                !goes_on(n, one.max(two).min(one + two + reach(&meetings[m], n)), least)
+                let most = one.max(two).min(one + two + reach(&meetings[m], n));
+                let ends_unseen = || strips[n].is_ragged && shut::is_unseen(views, &strips[n], usize::from(two > one));
+                !goes_on(n, most, NICHE)
                     && !goes_on(n, one + two, NICHES)
+                    && !(goes_on(n, most, UNSEEN) && ends_unseen())
             };
             let is_long = |widths: f64| strips[n].length() >= RECURS.max(widths * strips[n].width());
             let is_one_of_many = |beyond: Beyond| alike(&strips, &placed, n, beyond, |_| true) >= OTHERS;

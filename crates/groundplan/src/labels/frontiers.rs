@@ -3,13 +3,16 @@
 
 use super::beside::placed;
 use super::corridors::Strip;
-use super::openings::{self, DEEP, END, Opening};
+use super::openings::{self, Opening};
 use super::turned::Turned;
 use crate::ends::{both, overlap, wider};
 use crate::parameters::Parameters;
 
-/// One side is held over so much of what was seen.
+/// One side is held over so much of what was seen, and so many metres; the other over so many, as by the end of a row.
 const HELD: f64 = 0.6;
+const HELD_METRES: [f64; 2] = [0.5, 2.0];
+/// What is in line with another has its sides no farther than this from that one's, metres.
+const IN_LINE: f64 = 0.5;
 /// What shares more than this of its width with a known way is that one.
 const SHARED: f64 = 0.25;
 
@@ -23,7 +26,10 @@ pub fn with(views: &[Turned], strips: &[Strip], parameters: &Parameters) -> Opti
         for Opening { mut way, middle, .. } in found.filter(|opening| is_alike(&opening.way)) {
             way.along = both(way.along, [middle; 2]);
             let reached = wider(way.along, passing.width() / 2.0);
-            let shares = |n: &usize| overlap(ways[*n].across, way.across) > SHARED * way.width().min(ways[*n].width());
+            let shares = |n: &usize| {
+                overlap(ways[*n].along, reached) >= 0.0
+                    && overlap(ways[*n].across, way.across) > SHARED * way.width().min(ways[*n].width())
+            };
             let near = placed[way.direction].touching(reached, way.across).into_iter();
             let n = match near.filter(shares).collect::<Vec<usize>>()[..] {
                 [] => {
@@ -31,7 +37,7 @@ pub fn with(views: &[Turned], strips: &[Strip], parameters: &Parameters) -> Opti
                     ways.len() - 1
                 }
                 // Another one ends there, in line.
-                [n] if (0..2).all(|side| (ways[n].across[side] - way.across[side]).abs() <= END) => {
+                [n] if (0..2).all(|side| (ways[n].across[side] - way.across[side]).abs() <= IN_LINE) => {
                     ways[n].along = both(ways[n].along, way.along);
                     n
                 }
@@ -46,5 +52,7 @@ pub fn with(views: &[Turned], strips: &[Strip], parameters: &Parameters) -> Opti
 /// True when nothing ends what opens, between two sides of which one is no more than the end of a row.
 fn leads_on(opening: &Opening) -> bool {
     let [low, high] = opening.held;
-    opening.is_frontier && low.min(high) >= END && low.max(high) >= DEEP.0.max(HELD * opening.way.length())
+    opening.is_frontier
+        && low.min(high) >= HELD_METRES[0]
+        && low.max(high) >= HELD_METRES[1].max(HELD * opening.way.length())
 }

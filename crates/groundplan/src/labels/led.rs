@@ -77,7 +77,9 @@ pub fn is_before_wall(views: &[Turned], strip: &Strip, strips: &[Strip], placed:
         let ends = way.along.map(|end| own.place(its.to_map([end, way.middle()])));
         let [from, to] = sorted(ends.map(|end| end[1]));
         let goes_past = from < strip.across[0] - SIDE && to > strip.across[1] + SIDE;
-        if way.bays || way.is_short() || !holds(strip.along, own.crossing(its, strip.middle(), way.middle())[1]) {
+        let reaches = overlap([from, to], wider(strip.across, MOUTH)) >= 0.0;
+        let is_across = holds(strip.along, own.crossing(its, strip.middle(), way.middle())[1]);
+        if way.bays || way.is_short() || !reaches || !is_across {
             continue;
         }
         if goes_past {

@@ -12,14 +12,14 @@ use crate::parameters::Parameters;
 use std::ops::Range;
 
 /// It is so deep at least, metres, and so many times as deep as wide; and is looked into no farther than that.
-pub const DEEP: (f64, f64) = (2.0, 0.5);
+const DEEP: (f64, f64) = (2.0, 0.5);
 const LOOK: f64 = 8.0;
 /// The rows beside it end no farther than this from the side of what leads past them, and its sides are as near to their
 /// corners, metres.
-pub const END: f64 = 0.5;
+const END: f64 = 0.5;
 const CORNER: f64 = 0.3;
-/// Where the first bay of a row is empty that is so deep at most, in depths of what opens.
-const SHALLOW: f64 = 0.5;
+/// Where the first bay of a row is empty that is so deep at most, in depths of what opens, and metres.
+const SHALLOW: (f64, f64) = (0.5, 1.3);
 /// What is no wider than so many pitches may be a bay.
 const BAY: f64 = 1.03;
 /// A cell of which more than this share is not free is none of it.
@@ -130,7 +130,7 @@ impl Passing<'_> {
     /// itself does, at a wall.
     fn has_corners(&self, all: &Range<usize>, depths: &[usize], open: Range<usize>) -> bool {
         let near = (CORNER / self.view.cell).ceil() as usize;
-        let least = END.max(SHALLOW * self.metres(median(&depths[open.clone()])));
+        let least = END.max(SHALLOW.1.min(SHALLOW.0 * self.metres(median(&depths[open.clone()]))));
         let is_corner = |beside: Range<usize>, end: usize| match beside.is_empty() {
             true => shut::is_shut_at(self.view, self.way, end),
             false => depths[beside].iter().any(|depth| self.metres(*depth) <= least),
@@ -167,7 +167,8 @@ impl Passing<'_> {
 
     /// Over how much of it each side is held, metres: something stands there and what lies beyond is not free.
     fn held(&self, along: [f64; 2], across: [f64; 2]) -> [f64; 2] {
-        let columns = self.other.border(along[0])..self.other.border(along[1]);
+        let last = self.other.size[0];
+        let columns = self.other.border(along[0]).min(last)..self.other.border(along[1]).min(last);
         [(across[0], -1.0), (across[1], 1.0)].map(|(side, outwards)| {
             let [low, high] = sorted([BESIDE.0, BESIDE.1].map(|metres| side + outwards * metres));
             let held = self.other.blocked_where(columns.clone(), low, high, |share| share > TAKEN);
