@@ -19,7 +19,7 @@ const LOOK: f64 = 8.0;
 const END: f64 = 0.5;
 const CORNER: f64 = 0.3;
 /// Where the first bay of a row is empty that is so deep at most, in depths of what opens, and metres.
-const SHALLOW: (f64, f64) = (0.5, 1.3);
+const SHALLOW: (f64, f64) = (0.5, 1.9);
 /// What is no wider than so many pitches may be a bay.
 const BAY: f64 = 1.03;
 /// A cell of which more than this share is not free is none of it.
