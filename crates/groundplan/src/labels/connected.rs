@@ -44,9 +44,10 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
                 let [one, two] = arms(views, &strips, &meetings[m], n);
                 let most = one.max(two).min(one + two + reach(&meetings[m], n));
                 let ends_unseen = || strips[n].is_ragged && shut::is_unseen(views, &strips[n], usize::from(two > one));
-                !goes_on(n, most, NICHE)
-                    && !goes_on(n, one + two, NICHES)
-                    && !(goes_on(n, most, UNSEEN) && ends_unseen())
+                let leads_on = goes_on(n, most, NICHE)
+                    || goes_on(n, one + two, NICHES)
+                    || goes_on(n, most, UNSEEN) && ends_unseen();
+                !leads_on
             };
             let is_long = |widths: f64| strips[n].length() >= RECURS.max(widths * strips[n].width());
             let is_one_of_many = |beyond: Beyond| alike(&strips, &placed, n, beyond, |_| true) >= OTHERS;

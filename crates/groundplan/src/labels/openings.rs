@@ -131,9 +131,11 @@ impl Passing<'_> {
     fn has_corners(&self, all: &Range<usize>, depths: &[usize], open: Range<usize>) -> bool {
         let near = (CORNER / self.view.cell).ceil() as usize;
         let least = END.max(SHALLOW.1.min(SHALLOW.0 * self.metres(median(&depths[open.clone()]))));
-        let is_corner = |beside: Range<usize>, end: usize| match beside.is_empty() {
-            true => shut::is_shut_at(self.view, self.way, end),
-            false => depths[beside].iter().any(|depth| self.metres(*depth) <= least),
+        let is_corner = |beside: Range<usize>, end: usize| {
+            if beside.is_empty() {
+                return shut::is_shut_at(self.view, self.way, end);
+            }
+            depths[beside].iter().any(|depth| self.metres(*depth) <= least)
         };
         is_corner(open.start.saturating_sub(near)..open.start, all.start)
             && is_corner(open.end..(open.end + near).min(depths.len()), all.end)
