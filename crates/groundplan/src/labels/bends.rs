@@ -1,5 +1,5 @@
 //! Bends: a passage ends where its walls turn, and leads on along another direction to a way that runs askew to it; the walls
-//! from there on are too short to be lines. What leads there may be no longer than what opens into a way.
+//! from there on are too short to be lines. Before the bend it may be too short for a way by itself.
 
 use super::barriers;
 use super::beside::{Beside, placed};

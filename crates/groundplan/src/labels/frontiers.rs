@@ -4,8 +4,9 @@
 use super::beside::placed;
 use super::corridors::Strip;
 use super::openings::{self, Opening};
+use super::ragged;
 use super::turned::Turned;
-use crate::ends::{both, overlap, wider};
+use crate::ends::{both, wider};
 use crate::parameters::Parameters;
 
 /// One side is held over so much of what was seen, and so many metres; the other over so many, as by the end of a row.
@@ -13,8 +14,6 @@ const HELD: f64 = 0.6;
 const HELD_METRES: [f64; 2] = [0.5, 2.0];
 /// What is in line with another has its sides no farther than this from that one's, metres.
 const IN_LINE: f64 = 0.5;
-/// What shares more than this of its width with a known way is that one.
-const SHARED: f64 = 0.25;
 
 /// The ways with those that end at frontiers and are as wide as others; none where there are no such.
 pub fn with(views: &[Turned], strips: &[Strip], parameters: &Parameters) -> Option<Vec<Strip>> {
@@ -25,13 +24,10 @@ pub fn with(views: &[Turned], strips: &[Strip], parameters: &Parameters) -> Opti
         let found = openings::of(views, passing, parameters).into_iter().filter(leads_on);
         for Opening { mut way, middle, .. } in found.filter(|opening| is_alike(&opening.way)) {
             way.along = both(way.along, [middle; 2]);
-            let reached = wider(way.along, passing.width() / 2.0);
-            let shares = |n: &usize| {
-                overlap(ways[*n].along, reached) >= 0.0
-                    && overlap(ways[*n].across, way.across) > SHARED * way.width().min(ways[*n].width())
-            };
-            let near = placed[way.direction].touching(reached, way.across).into_iter();
-            let n = match near.filter(shares).collect::<Vec<usize>>()[..] {
+            let reaching = Strip { along: wider(way.along, passing.width() / 2.0), ..way.clone() };
+            let near = placed[way.direction].touching(reaching.along, way.across).into_iter();
+            let near = near.filter(|&n| ragged::is_beside(&ways[n], &reaching));
+            let n = match near.collect::<Vec<usize>>()[..] {
                 [] => {
                     ways.push(way);
                     ways.len() - 1

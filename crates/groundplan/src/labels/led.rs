@@ -72,16 +72,16 @@ fn leading<'a>(
 pub fn is_before_wall(views: &[Turned], strip: &Strip, strips: &[Strip], placed: &[Beside]) -> bool {
     let own = &views[strip.direction];
     let mut ending = [0, 0];
-    for (its, n) in leading(views, strip, placed) {
-        let way = &strips[n];
+    let long =
+        leading(views, strip, placed).map(|(its, n)| (its, &strips[n])).filter(|(_, way)| !way.bays && !way.is_short());
+    for (its, way) in long {
         let ends = way.along.map(|end| own.place(its.to_map([end, way.middle()])));
         let [from, to] = sorted(ends.map(|end| end[1]));
-        let goes_past = from < strip.across[0] - SIDE && to > strip.across[1] + SIDE;
         let reaches = overlap([from, to], wider(strip.across, MOUTH)) >= 0.0;
-        let is_across = holds(strip.along, own.crossing(its, strip.middle(), way.middle())[1]);
-        if way.bays || way.is_short() || !reaches || !is_across {
+        if !reaches || !holds(strip.along, own.crossing(its, strip.middle(), way.middle())[1]) {
             continue;
         }
+        let goes_past = from < strip.across[0] - SIDE && to > strip.across[1] + SIDE;
         if goes_past {
             return false;
         }

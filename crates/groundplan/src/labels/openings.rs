@@ -3,7 +3,7 @@
 use super::corridors::Strip;
 use super::gates::square_to;
 use super::runs::runs;
-use super::sections::WIDTH;
+use super::sections::{BAY, WIDTH};
 use super::shut;
 use super::stretches;
 use super::turned::Turned;
@@ -20,8 +20,6 @@ const END: f64 = 0.5;
 const CORNER: f64 = 0.3;
 /// Where the first bay of a row is empty that is so deep at most, in depths of what opens, and metres.
 const SHALLOW: (f64, f64) = (0.5, 1.9);
-/// What is no wider than so many pitches may be a bay.
-const BAY: f64 = 1.03;
 /// A cell of which more than this share is not free is none of it.
 const TAKEN: f64 = 0.5;
 /// At a frontier something stands in no more than this share of it.
@@ -183,7 +181,5 @@ impl Passing<'_> {
 
 /// Of some numbers that which half of the others are no more than.
 fn median(numbers: &[usize]) -> usize {
-    let mut in_order = numbers.to_vec();
-    in_order.sort_unstable();
-    in_order[in_order.len() / 2]
+    *numbers.to_vec().select_nth_unstable(numbers.len() / 2).1
 }

@@ -16,7 +16,7 @@ use crate::grid::Frame;
 /// A way is so wide, metres.
 pub const WIDTH: (f64, f64) = (1.6, 8.0);
 /// A section up to this many pitches is an empty bay, by what is seen of it: posts take a little of each.
-const BAY: f64 = 1.03;
+pub const BAY: f64 = 1.03;
 /// What passes a row's end is at least so many pitches wide, or lies within its last bay.
 const NARROW: f64 = 0.8;
 /// A section this near to a whole number of pitches is one of empty bays, unless its ends are closed.

@@ -87,11 +87,12 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 
 /// The strips without those that lead through some rows of a place and have no width of what leads through all: bays; nor
 /// those at a wall that the rows beside go on to. Where nothing leads through all but past their ends, what has no bays'
-/// width is none, nor what each row has as many of, between bars that stand beside nothing else, nor what leads through rows of
-/// two racks that are open more often than by chance; where something does, what lies as empty bays do is one. What leads past
-/// rows' ends up to one that goes on farther is none, but where something leads through all and it is as wide as bays, nor where
-/// nothing of the rows beside reaches into it, or those before it end at bars and that one goes on past it. Nor those beside which, with no rack between, one leads
-/// through more rows. Bars decide where that leaves it open, and cut what leads on over bays.
+/// width is none, nor what each row has as many of, between bars that stand beside nothing else, nor what leads through rows
+/// of two racks that are open more often than by chance; where something does, what lies as empty bays do is one. What leads
+/// past rows' ends up to one that goes on farther is none, but where something leads through all and it is as wide as bays,
+/// nor where nothing of the rows beside reaches into it, or those before it end at bars and that one goes on past it. Nor
+/// those beside which, with no rack between, one leads through more rows. Bars decide where that leaves it open, and cut
+/// what leads on over bays.
 pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let mut pieces: Vec<Vec<Strip>> = strips.iter().map(|strip| vec![strip.clone()]).collect();
