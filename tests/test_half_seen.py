@@ -101,3 +101,33 @@ def test_what_something_closes_that_far_from_a_way_is_a_niche(seen: int) -> None
 def test_where_next_to_nothing_was_seen_between_two_rows_no_way_is_known() -> None:
     survey = groundplan.survey(mouths(16), resolution=RESOLUTION)
     assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 2
+
+
+def beyond_rows(seen: int) -> Picture:
+    """Four rows in two blocks, of whose five aisles the second and the third were not seen between the blocks' outer ends.
+
+    So much was seen of them, pixels, through the way across the rows: a little more than that is wide.
+    """
+    picture = walled(3 * CROSS + 2 * BLOCK, 5 * AISLE + 4 * DEPTH)
+    lefts = [20 + CROSS, 20 + 2 * CROSS + BLOCK]
+    first, second, third, fourth = (20 + AISLE + row * (AISLE + DEPTH) for row in range(4))
+    for left in lefts:
+        for low in (first, second, third, fourth):
+            picture[low : low + DEPTH, left : left + BLOCK] = 0
+    picture[first + DEPTH : third, lefts[0] + 44 : lefts[1] + BLOCK - 44] = 205
+    for left in lefts:
+        for low, high in ((first + 3, first + DEPTH), (second + 3, second + DEPTH - 3), (third, third + DEPTH - 3)):
+            picture[low:high, left + 3 : left + BLOCK - 3] = 205
+    across = slice(lefts[1] - CROSS - 14, lefts[1] + 14)
+    picture[first + DEPTH : first + DEPTH + seen, across] = 254
+    picture[third - seen : third, across] = 254
+    return picture
+
+
+@pytest.mark.parametrize("turns", range(4))
+@pytest.mark.parametrize("seen", [18, 24, 30])
+def test_a_way_across_rows_leads_on_through_the_row_in_line_with_it_as_far_as_was_seen(seen: int, turns: int) -> None:
+    survey = groundplan.survey(np.ascontiguousarray(np.rot90(beyond_rows(seen), turns)), resolution=RESOLUTION)
+    types = [junction["type"] for junction in survey.of_kind("junction")]
+    # In the first aisle it is a place to turn off, and in the fourth one it leads on.
+    assert sorted(types) == ["L"] * 4 + ["T"] * 4 + ["X"]

@@ -178,3 +178,18 @@ def test_the_way_past_a_rows_head_is_one_though_another_halls_aisle_lies_beside_
     survey = groundplan.survey(site(floors, rows([3.2], [(4.5, 39.5)], depth=1)), resolution=RESOLUTION)
     ends = [junction for junction in survey.of_kind("junction") if junction["at"][0] > 40]
     assert [junction["type"] for junction in ends] == ["L", "L"]
+
+
+@pytest.mark.parametrize("turns", range(2))
+@pytest.mark.parametrize(("length", "hidden"), [(5, 0), (5, 1), (6, 2), (8, 3)])
+def test_a_passage_between_two_halls_opens_into_that_one_from_which_it_was_seen(
+    length: float, hidden: float, turns: int
+) -> None:
+    # Two rows of 2 m in each hall; what stands in the left one hides most of the passage's beginning.
+    halls: list[Box] = [(0, 0, 20, 18), (20 + length, 0, 40 + length, 18)]
+    floors: list[Box] = [*halls, (19, 9.7, 21 + length, 12.2)]
+    racks = [row for left, *_ in halls for row in rows([4, 10], [(left + 4.5, left + 15.5)])]
+    picture = site(floors, racks)
+    picture[212:256, 420 : 420 + round(hidden / RESOLUTION)] = 205
+    junctions, _ = found(np.ascontiguousarray(np.rot90(picture, turns)))
+    assert junctions == ["L"] * 8 + ["T"] * (5 if hidden else 6)

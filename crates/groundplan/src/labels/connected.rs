@@ -42,8 +42,11 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
         let leads = |n: usize| {
             let is_niche = |&m: &usize| {
                 let [one, two] = arms(views, &strips, &meetings[m], n);
-                let most = one.max(two).min(one + two + reach(&meetings[m], n));
-                let ends_unseen = || strips[n].is_ragged && shut::is_unseen(views, &strips[n], usize::from(two > one));
+                let end = usize::from(two > one);
+                // What ends before the junction is drawn up to it later; it is shorter by that where a wall ends it.
+                let within = if shut::is_shut(views, &strips[n], end) { reach(&meetings[m], n) } else { 0.0 };
+                let most = one.max(two).min(strips[n].length() - within);
+                let ends_unseen = || strips[n].is_ragged && shut::is_unseen(views, &strips[n], end);
                 let leads_on = goes_on(n, most, NICHE)
                     || goes_on(n, one + two, NICHES)
                     || goes_on(n, most, UNSEEN) && ends_unseen();

@@ -14,8 +14,8 @@ use super::sections::{Columns, Free, WIDTH};
 use super::sided;
 use super::turned::Turned;
 use crate::bands::flat_map_each;
-use crate::ends::{around, holds, overlap, shared, sorted};
-use std::collections::BTreeMap;
+use crate::ends::{around, both, holds, overlap, shared, sorted, wider};
+use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 
 /// What shares so much of a row's depth leads into it.
@@ -168,7 +168,7 @@ fn crossed(
             }
             let aisles = between.map(|n| &strips[n]);
             // Then the rows might as well be what lies between two ways across the rows.
-            let shorter = aisles.iter().map(|aisle| aisle.length()).fold(f64::INFINITY, f64::min);
+            let shorter = between.map(|n| length_of(strips, &placed, n)).into_iter().fold(f64::INFINITY, f64::min);
             let times = if view.pitch.is_some() && other.pitch.is_none() { LONGER } else { 1.0 };
             let judged = near.into_iter().filter(|&n| strips[n].length() < times * shorter);
             // Where no bays are known, what is wider is no bay.
@@ -190,6 +190,24 @@ fn crossed(
         crossed.extend(rows.into_iter().zip(found).map(|(row, strips)| Across { row, strips }));
     }
     crossed
+}
+
+/// How long a way is with those that lead on as it, metres. Of all it is known where they lie.
+fn length_of(strips: &[Strip], placed: &[Beside], n: usize) -> f64 {
+    let (mut whole, mut known, mut next) = (strips[n].along, BTreeSet::from([n]), vec![n]);
+    while let Some(n) = next.pop() {
+        let own = &strips[n];
+        whole = both(whole, own.along);
+        let near = placed[own.direction].touching(wider(own.along, rows::SAME), own.across);
+        next.extend(near.into_iter().filter(|&m| leads_on_as(own, &strips[m]) && known.insert(m)));
+    }
+    whole[1] - whole[0]
+}
+
+/// True when of two ways of a direction one begins where the other ends, in line: they are as wide as what was seen of their sides.
+fn leads_on_as(one: &Strip, other: &Strip) -> bool {
+    let is_at_end = |side: usize| (one.along[side] - other.along[1 - side]).abs() <= rows::SAME;
+    (is_at_end(0) || is_at_end(1)) && overlap(one.across, other.across) > one.width().min(other.width()) / 2.0
 }
 
 /// True when a strip is too narrow for a way through a row between two aisles, and none of several alike side by side: a
@@ -473,6 +491,13 @@ mod tests {
         // What is wider than bays in one row is a way there, and through others.
         assert_eq!(pieces(&[bay([1.5, 20.0]), row([20.0, 38.5], true)]), [[0.0, 40.0]]);
         assert_eq!(pieces(&[bay([1.5, 38.5])]), [[0.0, 40.0]]);
+    }
+
+    #[test]
+    fn an_aisle_leads_on_as_the_passage_in_line_that_begins_where_it_ends() {
+        let on = |along: [f64; 2], across: [f64; 2]| leads_on_as(&strip(), &Strip { along, across, ..strip() });
+        assert!(on([40.0, 55.0], [-0.5, 3.5]) && on([-20.0, 0.2], [0.4, 2.8]));
+        assert!(!on([42.0, 55.0], [0.0, 3.0]) && !on([40.0, 55.0], [2.0, 5.0]) && !on([0.0, 40.0], [0.0, 3.0]));
     }
 
     #[test]

@@ -20,6 +20,12 @@ pub fn with(views: &[Turned], strips: &[Strip], parameters: &Parameters) -> Opti
     let mut ways = strips.to_vec();
     let mut placed = placed(views, strips.iter().map(Strip::place));
     let is_alike = |way: &Strip| strips.iter().any(|one| one.direction == way.direction && one.is_as_wide(way));
+    let leads_on = |opening: &Opening| {
+        let is_known = || strips.iter().any(|one| is_in_line(one, &opening.way));
+        let [low, high] = opening.held;
+        let is_long = low.max(high) >= HELD_METRES[1].max(HELD * opening.way.length());
+        opening.is_frontier && low.min(high) >= HELD_METRES[0] && (is_long || is_known())
+    };
     for passing in strips {
         let found = openings::of(views, passing, parameters).into_iter().filter(leads_on);
         for Opening { mut way, middle, .. } in found.filter(|opening| is_alike(&opening.way)) {
@@ -33,7 +39,7 @@ pub fn with(views: &[Turned], strips: &[Strip], parameters: &Parameters) -> Opti
                     ways.len() - 1
                 }
                 // Another one ends there, in line.
-                [n] if (0..2).all(|side| (ways[n].across[side] - way.across[side]).abs() <= IN_LINE) => {
+                [n] if is_in_line(&ways[n], &way) => {
                     ways[n].along = both(ways[n].along, way.along);
                     n
                 }
@@ -45,10 +51,7 @@ pub fn with(views: &[Turned], strips: &[Strip], parameters: &Parameters) -> Opti
     (ways != strips).then_some(ways)
 }
 
-/// True when nothing ends what opens, between two sides of which one is no more than the end of a row.
-fn leads_on(opening: &Opening) -> bool {
-    let [low, high] = opening.held;
-    opening.is_frontier
-        && low.min(high) >= HELD_METRES[0]
-        && low.max(high) >= HELD_METRES[1].max(HELD * opening.way.length())
+/// True when one way lies in line with another.
+fn is_in_line(one: &Strip, other: &Strip) -> bool {
+    one.direction == other.direction && (0..2).all(|side| (one.across[side] - other.across[side]).abs() <= IN_LINE)
 }
