@@ -104,9 +104,9 @@ def test_where_next_to_nothing_was_seen_between_two_rows_no_way_is_known() -> No
 
 
 def beyond_rows(seen: int) -> Picture:
-    """Four rows in two blocks, of whose five aisles the second and the third were not seen between the blocks' outer ends.
+    """Four rows in two blocks, of whose five aisles the second and the third were seen at their ends alone.
 
-    So much was seen of them, pixels, through the way across the rows: a little more than that is wide.
+    Through the way across the rows so many pixels were seen of them, a little wider than that is.
     """
     picture = walled(3 * CROSS + 2 * BLOCK, 5 * AISLE + 4 * DEPTH)
     lefts = [20 + CROSS, 20 + 2 * CROSS + BLOCK]
