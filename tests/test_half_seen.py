@@ -131,3 +131,41 @@ def test_a_way_across_rows_leads_on_through_the_row_in_line_with_it_as_far_as_wa
     types = [junction["type"] for junction in survey.of_kind("junction")]
     # In the first aisle it is a place to turn off, and in the fourth one it leads on.
     assert sorted(types) == ["L"] * 4 + ["T"] * 4 + ["X"]
+
+
+@pytest.mark.parametrize("wall", [4, 8, 12])
+def test_a_gate_to_the_yard_in_line_with_a_way_across_rows_is_none(wall: int) -> None:
+    # Of the yard a cone was seen through it.
+    picture = np.pad(walled(3 * CROSS + 2 * BLOCK, 3 * AISLE + 2 * DEPTH), ((0, 120), (0, 0)), constant_values=205)
+    lefts = [20 + CROSS, 20 + 2 * CROSS + BLOCK]
+    for left in lefts:
+        for low in (20 + AISLE, 20 + 2 * AISLE + DEPTH):
+            picture[low : low + DEPTH, left : left + BLOCK] = 0
+    bottom = 20 + 3 * AISLE + 2 * DEPTH
+    picture[bottom : bottom + wall, 18:-18] = 0
+    middle = lefts[1] - CROSS // 2
+    for y in range(bottom, bottom + 80):
+        reach = CROSS // 2 + max(0, y - bottom - wall) // 2
+        picture[y, middle - reach : middle + reach] = 254
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 4 + ["X"]
+
+
+def test_a_way_does_not_lead_on_through_a_row_behind_one_that_is_shut() -> None:
+    # Across the first row a way leads, the next one is full, and behind a gap in line in the last one nothing was seen.
+    picture = walled(3 * CROSS + 2 * BLOCK, 4 * AISLE + 3 * DEPTH)
+    lefts = [20 + CROSS, 20 + 2 * CROSS + BLOCK]
+    lows = [20 + AISLE + n * (AISLE + DEPTH) for n in range(3)]
+    for low in lows:
+        for left in lefts:
+            picture[low : low + DEPTH, left : left + BLOCK] = 0
+    picture[lows[1] : lows[1] + DEPTH, lefts[0] : lefts[1] + BLOCK] = 0
+    back = lows[2] + DEPTH
+    picture[back:, lefts[0] + 44 : lefts[1] + BLOCK - 44] = 205
+    for left in lefts:
+        picture[lows[2] + 3 : back, left + 3 : left + BLOCK - 3] = 205
+    picture[back : back + 24, lefts[1] - CROSS - 14 : lefts[1] + 14] = 254
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    middle = (lefts[1] - CROSS / 2) * RESOLUTION
+    across = [way for way in survey.of_kind("corridor") if abs(np.mean(way["axis"], axis=0)[0] - middle) < 0.5]
+    assert len([way for way in across if way["width"] > 3.3]) == 1

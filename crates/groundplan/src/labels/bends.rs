@@ -8,6 +8,7 @@ use super::junctions;
 use super::known::{Known, Led};
 use super::meeting::{LEAST_SINE, Meeting, of_each};
 use super::openings::{self, Opening};
+use super::rows::Row;
 use super::shut::{inner, sign};
 use super::stretches;
 use super::turned::Turned;
@@ -33,11 +34,18 @@ const WALLED: f64 = 0.85;
 const WALL: f64 = 0.1;
 
 /// The ways with those that they lead to round a bend; none where there are no such.
-pub fn with(views: &[Turned], strips: &[Strip], meetings: &[Meeting], parameters: &Parameters) -> Option<Vec<Strip>> {
+pub fn with(
+    views: &[Turned],
+    strips: &[Strip],
+    meetings: &[Meeting],
+    rows: &[Row],
+    parameters: &Parameters,
+) -> Option<Vec<Strip>> {
     // One that it leads along, one that it turns to and one of the way that it meets.
     if views.len() < 3 {
         return None;
     }
+    let pitches = openings::pitches(views, rows);
     let mut known = Known::new(views, strips);
     let placed = placed(views, strips.iter().map(Strip::place));
     let widest = corridors::widest(strips);
@@ -71,7 +79,7 @@ pub fn with(views: &[Turned], strips: &[Strip], meetings: &[Meeting], parameters
             })
         };
         let is_leg = |opening: &Opening| opening.held.iter().all(|held| *held >= LENGTH[0]) && is_new(&opening.way);
-        for Opening { way, middle, .. } in openings::of(views, strip, parameters).into_iter().filter(is_leg) {
+        for Opening { way, middle, .. } in openings::of(views, strip, &pitches, parameters).into_iter().filter(is_leg) {
             let side = usize::from(middle < way.along[0]);
             if let Some(led) = bend(&way, side) {
                 known.add(led);

@@ -20,8 +20,9 @@ const OTHERS: usize = 2;
 /// no such others run beside it something stands along both its sides: else it is what furniture leaves of a room.
 const SHUT: f64 = 4.5;
 /// A corridor that meets one other goes on beyond it, on one side for so many times its width and so far, metres, or on
-/// both together for as many times and so far: or it is a niche at the other's side. Of what has no lines for its sides and
-/// leads into the unseen less is enough on the one.
+/// both together for as many times and so far: or it is a niche at the other's side. Half of what the junction takes of it
+/// does not count where something stands at one of its ends. Of what has no lines for its sides and leads into the unseen
+/// less is enough on the one.
 const NICHE: (f64, f64) = (1.5, 2.5);
 const UNSEEN: (f64, f64) = (0.5, 2.0);
 const NICHES: (f64, f64) = (2.2, 4.0);
@@ -42,11 +43,13 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
         let leads = |n: usize| {
             let is_niche = |&m: &usize| {
                 let [one, two] = arms(views, &strips, &meetings[m], n);
-                let end = usize::from(two > one);
-                // What ends before the junction is drawn up to it later; it is shorter by that where a wall ends it.
-                let within = if shut::is_shut(views, &strips[n], end) { reach(&meetings[m], n) } else { 0.0 };
+                let free_end = usize::from(two > one);
+                // It has been drawn as far as its sides were seen, which may be where the junction begins: what leads on
+                // there is drawn on to its middle later, a room with jambs or a wall is not.
+                let is_parted = || (0..2).any(|side| shut::is_parted(views, &strips[n], side));
+                let within = if is_parted() { reach(&meetings[m], n) } else { 0.0 };
                 let most = one.max(two).min(strips[n].length() - within);
-                let ends_unseen = || strips[n].is_ragged && shut::is_unseen(views, &strips[n], end);
+                let ends_unseen = || strips[n].is_ragged && shut::is_unseen(views, &strips[n], free_end);
                 let leads_on = goes_on(n, most, NICHE)
                     || goes_on(n, one + two, NICHES)
                     || goes_on(n, most, UNSEEN) && ends_unseen();

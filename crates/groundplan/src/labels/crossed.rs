@@ -192,9 +192,9 @@ fn crossed(
     crossed
 }
 
-/// How long a way is with those that lead on as it, metres. Of all it is known where they lie.
-fn length_of(strips: &[Strip], placed: &[Beside], n: usize) -> f64 {
-    let (mut whole, mut known, mut next) = (strips[n].along, BTreeSet::from([n]), vec![n]);
+/// How long a way is with those that lead on as it, metres; `placed` says where all of them lie.
+fn length_of(strips: &[Strip], placed: &[Beside], way: usize) -> f64 {
+    let (mut whole, mut known, mut next) = (strips[way].along, BTreeSet::from([way]), vec![way]);
     while let Some(n) = next.pop() {
         let own = &strips[n];
         whole = both(whole, own.along);
@@ -204,7 +204,8 @@ fn length_of(strips: &[Strip], placed: &[Beside], n: usize) -> f64 {
     whole[1] - whole[0]
 }
 
-/// True when of two ways of a direction one begins where the other ends, in line: they are as wide as what was seen of their sides.
+/// True when of two ways of a direction one begins where the other ends, in line. Their widths may differ, since each is as
+/// wide as what was seen of its sides.
 fn leads_on_as(one: &Strip, other: &Strip) -> bool {
     let is_at_end = |side: usize| (one.along[side] - other.along[1 - side]).abs() <= rows::SAME;
     (is_at_end(0) || is_at_end(1)) && overlap(one.across, other.across) > one.width().min(other.width()) / 2.0

@@ -2,6 +2,7 @@
 
 use super::corridors::Strip;
 use super::gates::square_to;
+use super::rows::Row;
 use super::runs::runs;
 use super::sections::{BAY, WIDTH};
 use super::shut;
@@ -20,6 +21,8 @@ const END: f64 = 0.5;
 const CORNER: f64 = 0.3;
 /// Where the first bay of a row is empty that is so deep at most, in depths of what opens, and metres.
 const SHALLOW: (f64, f64) = (0.5, 1.9);
+/// A row has so many bays at least.
+const BAYS: f64 = 2.0;
 /// A cell of which more than this share is not free is none of it.
 const TAKEN: f64 = 0.5;
 /// At a frontier something stands in no more than this share of it.
@@ -36,17 +39,25 @@ pub struct Opening {
     pub way: Strip,
     /// Where that one's middle lies, along.
     pub middle: f64,
-    /// Over so much of that each of its sides is held, metres.
+    /// Over so much of that each of its sides is held, metres, and over so much something stands there.
     pub held: [f64; 2],
+    pub stands: [f64; 2],
     /// It ends at a frontier: nothing stands there.
     pub is_frontier: bool,
 }
 
-/// What opens into a way from one side or the other, square to it.
-pub fn of(views: &[Turned], way: &Strip, parameters: &Parameters) -> Vec<Opening> {
-    let view = &views[way.direction];
+/// From post to post along each direction, metres, where rows run along it: other than these nothing has bays.
+pub fn pitches(views: &[Turned], rows: &[Row]) -> Vec<Option<f64>> {
+    let longest =
+        |view: &Turned| rows.iter().filter(|row| row.direction == view.direction).map(Row::length).fold(0.0, f64::max);
+    views.iter().map(|view| view.pitch.filter(|pitch| longest(view) >= BAYS * pitch)).collect()
+}
+
+/// What opens into a way from one side or the other, square to it, where these are the pitches of all directions.
+pub fn of(views: &[Turned], way: &Strip, pitches: &[Option<f64>], parameters: &Parameters) -> Vec<Opening> {
+    let (view, pitch) = (&views[way.direction], pitches[way.direction]);
     let Some(other) = square_to(views, way.direction) else { return Vec::new() };
-    [0, 1].into_iter().flat_map(|side| Passing { view, other, way, side, parameters }.openings()).collect()
+    [0, 1].into_iter().flat_map(|side| Passing { view, other, way, side, pitch, parameters }.openings()).collect()
 }
 
 /// A way past the ends of rows on one of its sides.
@@ -55,6 +66,8 @@ struct Passing<'a> {
     other: &'a Turned,
     way: &'a Strip,
     side: usize,
+    /// From post to post along it, metres, where there are such.
+    pitch: Option<f64>,
     parameters: &'a Parameters,
 }
 
@@ -121,7 +134,7 @@ impl Passing<'_> {
     fn is_wide_as_way(&self, columns: usize) -> bool {
         let width = self.metres(columns);
         (self.parameters.labels_min_width.max(WIDTH.0)..=self.parameters.labels_max_width).contains(&width)
-            && self.view.pitch.is_none_or(|pitch| width > BAY * pitch)
+            && self.pitch.is_none_or(|pitch| width > BAY * pitch)
     }
 
     /// True when at either side of some columns, of which the way's are given, a row ends, be its first bay empty, or the way
@@ -157,25 +170,30 @@ impl Passing<'_> {
         let [one, two] = corners.map(|place| self.other.place(self.view.to_map(place)));
         let [along, across] = [0, 1].map(|axis| sorted([one[axis], two[axis]]));
         let middle = self.other.place(self.view.to_map([sides[0], self.way.middle()]))[0];
+        let [held, stands] = self.held(along, across);
         Some(Opening {
             way: stretches::ragged(self.other, along, across, depth),
             middle,
-            held: self.held(along, across),
+            held,
+            stands,
             is_frontier: cells < self.most() && shut as f64 <= SHUT * depths.len() as f64,
         })
     }
 
-    /// Over how much of it each side is held, metres: something stands there and what lies beyond is not free.
-    fn held(&self, along: [f64; 2], across: [f64; 2]) -> [f64; 2] {
+    /// Over how much of it each side is held, metres: something stands there and what lies beyond is not free; and over how
+    /// much something stands.
+    fn held(&self, along: [f64; 2], across: [f64; 2]) -> [[f64; 2]; 2] {
         let last = self.other.size[0];
         let columns = self.other.border(along[0]).min(last)..self.other.border(along[1]).min(last);
-        [(across[0], -1.0), (across[1], 1.0)].map(|(side, outwards)| {
+        let of_side = |(side, outwards): (f64, f64)| {
             let [low, high] = sorted([BESIDE.0, BESIDE.1].map(|metres| side + outwards * metres));
             let held = self.other.blocked_where(columns.clone(), low, high, |share| share > TAKEN);
             let held = held.count(0..columns.len()) as f64 * self.other.cell;
             let stands = self.other.share_touched(columns.clone(), side - SIDE, side + SIDE) * (along[1] - along[0]);
-            if stands >= SIDED * held { held } else { 0.0 }
-        })
+            [if stands >= SIDED * held { held } else { 0.0 }, stands]
+        };
+        let [low, high] = [(across[0], -1.0), (across[1], 1.0)].map(of_side);
+        [0, 1].map(|n| [low[n], high[n]])
     }
 }
 

@@ -6,7 +6,7 @@ use super::lags::LONGEST;
 use super::panes;
 use super::sided;
 use super::turned::Turned;
-use crate::ends::sorted;
+use crate::ends::{sorted, wider};
 use std::ops::Range;
 
 /// A corridor goes on beyond a junction when it does so for this long, metres, and where a wall ends it, for this share
@@ -21,6 +21,8 @@ const SHUT: f64 = 1.0;
 /// What closes it is this deep, metres, and lies across this share of its width.
 const DEEP: f64 = 0.4;
 const ACROSS: f64 = 0.5;
+/// Jambs stand within its sides by more than so much, metres, across so much of the rest.
+const JAMBS: (f64, f64) = (0.1, 0.25);
 /// Where it goes on over what was not seen, from so far beyond its end to so far, metres, more than this share is no floor.
 const BEYOND: (f64, f64) = (0.2, 1.2);
 const FLOOR: f64 = 0.5;
@@ -38,6 +40,15 @@ pub fn is_shut(views: &[Turned], strip: &Strip, side: usize) -> bool {
     let end = strip.along[side];
     let [from, to] = [end - SHUT, end + SHUT].map(|u| view.column(u));
     closed(view, strip, side, SHUT).is_some() || barriers::across(view, strip.across, from..to + 1).any()
+}
+
+/// True when at one of a strip's ends it is shut, or jambs stand, or what else stands across a part of it.
+pub fn is_parted(views: &[Turned], strip: &Strip, side: usize) -> bool {
+    let view = &views[strip.direction];
+    let [from, to] = wider([strip.along[side]; 2], DEEP).map(|u| view.column(u));
+    let [low, high] = wider(strip.across, -JAMBS.0);
+    let stands = (from..to).map(|n| view.occupied(n, low, high)).sum::<f64>();
+    stands >= JAMBS.1 || is_shut(views, strip, side)
 }
 
 /// True when nothing was seen beyond one of a strip's ends: neither what shuts it nor floor.

@@ -238,10 +238,10 @@ impl Plan {
         if let Some(more) = cornered::with(views, &plan.strips, evidence.parameters) {
             plan = Self::new(views, more, threads);
         }
-        if let Some(more) = frontiers::with(views, &plan.strips, evidence.parameters) {
+        if let Some(more) = frontiers::with(views, &plan.strips, &plan.rows, evidence.parameters) {
             plan = Self::new(views, more, threads);
         }
-        if let Some(more) = bends::with(views, &plan.strips, &plan.meetings, evidence.parameters) {
+        if let Some(more) = bends::with(views, &plan.strips, &plan.meetings, &plan.rows, evidence.parameters) {
             plan = Self::new(views, more, threads);
         }
         plan.racks = plan.find_racks(views, on_legs, &standing, threads);
