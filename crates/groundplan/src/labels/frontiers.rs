@@ -1,5 +1,5 @@
 //! Ways that end at a frontier, between what was seen and what was not (Yamauchi 1997), before they are long enough for one:
-//! past the ends of two rows a robot saw as far between them as its sensor reaches, and went on, or through a row in line with a way.
+//! past the ends of two rows, or through a row in line with a way, a robot saw as far as its sensor reaches, and went on.
 
 use super::beside::{Beside, placed};
 use super::corridors::Strip;
@@ -59,7 +59,7 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
     (ways != strips).then_some(ways)
 }
 
-/// True when what opens lies between two sides of which one is no more than the end of a row.
+/// True when what opens lies between two sides of which one may be no more than the end of a row.
 fn is_held(opening: &Opening) -> bool {
     let [low, high] = opening.held;
     low.min(high) >= HELD_METRES[0] && low.max(high) >= HELD_METRES[1].max(HELD * opening.way.length())
