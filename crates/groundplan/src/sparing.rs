@@ -7,7 +7,7 @@ use crate::bands::side_by_side;
 use crate::coverage::Coverage;
 use crate::gradients::Gradients;
 use crate::grid::{Frame, Grid};
-use crate::labels::{Division, Ground, Memory, Recall, Sight, Sketch, find_labels_in, find_patterns};
+use crate::labels::{Division, Ground, Lined, Memory, Recall, Sketch, find_labels_in, find_patterns};
 use crate::occupancy::Occupancy;
 use crate::parameters::Parameters;
 use crate::subdivision::Subdivision;
@@ -48,9 +48,9 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
         (Subdivision { centres, ..Subdivision::default() }, occupancy, coverage)
     };
     coverage.add(&structure.gradients, threads);
-    let sight = {
+    let lined = {
         let evidence = structure.evidence(grid, parameters, threads, &recall);
-        side_by_side(1, |side| Sight::lined(&evidence, Ground::start(side, grid, threads, &recall)))
+        side_by_side(1, |side| Lined::new(&evidence, Ground::start(side, grid, threads, &recall)))
     };
     // What is seen between the lines and the labels' racks need specks, and no other stage needs gradients.
     structure.gradients = structure.gradients.specks();
@@ -58,7 +58,7 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
         let evidence = structure.evidence(grid, parameters, threads, &recall);
         let no_links = Adjacency::default();
         let division = Division { subdivision: &subdivision, occupancy: &occupancy, adjacency: &no_links };
-        find_labels_in(&evidence, || division, Sketch::new(&evidence, sight.seen(&evidence)))
+        find_labels_in(&evidence, || division, Sketch::new(&evidence, lined.seen(&evidence)))
     };
     drop((subdivision, occupancy));
     structure.gradients = Gradients::default();

@@ -6,13 +6,14 @@
 
 use super::Evidence;
 use super::lags;
+use super::near::Near;
 use super::period::{self, Period};
 use super::pitch;
 use super::recall::Key;
 use super::rows::Row;
 use super::turned::Turned;
 use crate::bands::map_each;
-use crate::ends::holds;
+use crate::ends::{holds, wider};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -51,11 +52,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Option<P
         if own.is_empty() {
             continue;
         }
-        // Across, then along.
-        let mut specks: Vec<[f64; 2]> = pitch::specks_of(evidence, view).map(|[u, v]| [v, u]).collect();
-        specks.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
-        let places: Vec<Vec<f64>> = own.iter().map(|&n| along(&rows[n], &specks)).collect();
-        drop(specks);
+        let places = posts(pitch::specks_of(evidence, view), &own.iter().map(|&n| &rows[n]).collect::<Vec<_>>());
         let Some(common) = common(&places, evidence) else { continue };
         let lengths: Vec<usize> = own.iter().filter_map(|&n| nearly_whole(rows[n].length() / common)).collect();
         let Some(times) = in_a_bay(common, &lengths, view.pitch) else { continue };
@@ -71,19 +68,30 @@ pub fn find(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Option<P
     found
 }
 
-/// Where specks stand on a row's faces, along.
-fn along(row: &Row, specks: &[[f64; 2]]) -> Vec<f64> {
-    let mut places = Vec::new();
-    for face in row.across {
-        let from = specks.partition_point(|s| s[0] < face - NEAR);
-        let to = specks.partition_point(|s| s[0] <= face + NEAR);
-        let within = specks[from..to].iter().map(|s| s[1]).filter(|u| holds(row.along, *u));
-        let mut steps: Vec<i64> = within.map(|u| (u / STEP).round() as i64).collect();
-        steps.sort_unstable();
-        steps.dedup();
-        places.extend(steps.into_iter().map(|step| step as f64 * STEP));
-    }
-    places
+/// Where specks, which have places along and across, stand on the faces of some rows, along, row by row.
+fn posts(specks: impl Iterator<Item = [f64; 2]>, rows: &[&Row]) -> Vec<Vec<f64>> {
+    let faces = || rows.iter().flat_map(|row| row.across.map(|face| [row.along, wider([face; 2], NEAR)]));
+    let corners =
+        |[[left, right], [low, high]]: [[f64; 2]; 2]| vec![[left, low], [right, low], [right, high], [left, high]];
+    let near = Near::polygons(&faces().map(corners).collect::<Vec<_>>());
+    let faces: Vec<_> = faces().collect();
+    let mut steps: Vec<Vec<i32>> = vec![Vec::new(); faces.len()];
+    specks.for_each(|[u, v]| {
+        for &n in near.at([u, v]) {
+            let [along, across] = faces[n as usize];
+            if holds(along, u) && holds(across, v) {
+                steps[n as usize].push((u / STEP).round() as i32);
+            }
+        }
+    });
+    let of_row = |steps: &mut [Vec<i32>]| {
+        for face in &mut *steps {
+            face.sort_unstable();
+            face.dedup();
+        }
+        steps.iter().flatten().map(|&step| f64::from(step) * STEP).collect()
+    };
+    steps.chunks_mut(2).map(of_row).collect()
 }
 
 /// The pitch at which the rows have most power together; the longest of those that are about as good.

@@ -5,7 +5,6 @@ use super::frames::{LEG, NEAR};
 use super::lags::{LAGS, LONGEST, in_parts};
 use super::uprights::Upright;
 use crate::ends::{holds, overlap, sorted};
-use std::collections::BTreeMap;
 
 /// A plate or a guard is no thicker than this, metres.
 const PLATE: f64 = 0.4;
@@ -154,54 +153,51 @@ fn gaps(frames: &[Frame]) -> Vec<Gap> {
 }
 
 /// Of gaps at one place one: of two racks back to back each has one, and both together.
-fn apart(gaps: Vec<Gap>) -> Vec<Gap> {
-    let mut cells = Cells::new([APART, DEPTH[1]], std::iter::empty());
-    let mut kept: Vec<Gap> = Vec::new();
-    for gap in gaps {
-        let is_same = |n: usize| {
-            let other = &kept[n];
+fn apart(mut gaps: Vec<Gap>) -> Vec<Gap> {
+    let cells = Cells::new([APART, DEPTH[1]], gaps.iter().map(Gap::begins));
+    let mut is_kept = vec![false; gaps.len()];
+    for n in 0..gaps.len() {
+        let gap = gaps[n];
+        let is_same = |other: &Gap| {
             let is_near = |one: f64, other: f64| (one - other).abs() <= APART;
             is_near(gap.at, other.at) && is_near(gap.length, other.length) && overlap(gap.faces, other.faces) > 0.0
         };
-        let same = cells.around(gap.begins()).find(|&n| is_same(n));
-        if let Some(n) = same {
-            kept[n].is_rack |= gap.is_rack;
-        } else {
-            cells.add(kept.len(), gap.begins());
-            kept.push(gap);
+        let same = cells.around(gap.begins()).find(|&m| is_kept[m] && is_same(&gaps[m]));
+        match same {
+            Some(same) => gaps[same].is_rack |= gap.is_rack,
+            None => is_kept[n] = true,
         }
     }
-    kept
+    gaps.into_iter().zip(is_kept).filter_map(|(gap, is_kept)| is_kept.then_some(gap)).collect()
 }
 
 /// Numbers by places along and across: what is nearer than a cell's sides is in it or in one around it.
 struct Cells {
     /// Metres.
     sides: [f64; 2],
-    of: BTreeMap<[i64; 2], Vec<usize>>,
+    /// Cell after cell, and in each by number.
+    numbers: Vec<([i64; 2], u32)>,
 }
 
 impl Cells {
     fn new(sides: [f64; 2], places: impl Iterator<Item = [f64; 2]>) -> Self {
-        let mut made = Self { sides, of: BTreeMap::new() };
-        places.enumerate().for_each(|(n, place)| made.add(n, place));
-        made
-    }
-
-    fn cell(&self, place: [f64; 2]) -> [i64; 2] {
-        [0, 1].map(|axis| (place[axis] / self.sides[axis]).floor() as i64)
-    }
-
-    fn add(&mut self, number: usize, place: [f64; 2]) {
-        self.of.entry(self.cell(place)).or_default().push(number);
+        let mut numbers: Vec<_> = (0..).zip(places).map(|(n, place)| (cell(sides, place), n)).collect();
+        numbers.sort_unstable();
+        Self { sides, numbers }
     }
 
     fn around(&self, place: [f64; 2]) -> impl Iterator<Item = usize> {
-        let [column, row] = self.cell(place);
-        let columns = column - 1..=column + 1;
-        let cells = columns.flat_map(move |column| self.of.range([column, row - 1]..=[column, row + 1]));
-        cells.flat_map(|(_, numbers)| numbers.iter().copied())
+        let [column, row] = cell(self.sides, place);
+        let of_column = move |column: i64| {
+            let from = self.numbers.partition_point(|(cell, _)| *cell < [column, row - 1]);
+            self.numbers[from..].iter().take_while(move |(cell, _)| *cell <= [column, row + 1])
+        };
+        (column - 1..=column + 1).flat_map(of_column).map(|(_, n)| *n as usize)
     }
+}
+
+fn cell(sides: [f64; 2], place: [f64; 2]) -> [i64; 2] {
+    [0, 1].map(|axis| (place[axis] / sides[axis]).floor() as i64)
 }
 
 #[cfg(test)]

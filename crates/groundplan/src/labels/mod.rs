@@ -100,7 +100,7 @@ use crate::subdivision::Subdivision;
 use crate::tiles::Tiles;
 use look::Look;
 use rooms::Space;
-pub(crate) use sketch::{Glance, Sight, Sketch};
+pub(crate) use sketch::{Glance, Lined, Sight, Sketch};
 pub(crate) use uprights::find as find_uprights;
 
 /// Kinds of junctions.

@@ -79,7 +79,15 @@ impl<'a> Columns<'a> {
         let middle = f64::midpoint(row.across[0], row.across[1]);
         let count = ((row.along[1] - row.along[0]) / view.cell) as usize;
         let lines = LinesAcross { look, frame, view, across: row.across, middle, lean };
-        let mut made = Self { view, row, lines, pitch, blocked: Vec::new(), faces: Vec::new(), stops: Vec::new() };
+        let mut made = Self {
+            view,
+            row,
+            lines,
+            pitch,
+            blocked: Vec::with_capacity(count),
+            faces: Vec::with_capacity(count),
+            stops: Vec::new(),
+        };
         let slices = (((row.across[1] - row.across[0]) / view.cell).round() as usize).max(1);
         let height = (row.across[1] - row.across[0]) / slices as f64;
         let slices: Vec<_> = (0..slices)

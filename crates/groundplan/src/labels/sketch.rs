@@ -54,14 +54,14 @@ impl<'a> Glance<'a> {
     pub fn new(scene: &Scene<'a>, look: Look<'a>, uprights: &[Upright]) -> Self {
         let on_legs = legs::find(scene, uprights);
         let count = scene.directions.angles.len();
-        let view = |direction| Turned::new(scene, direction, &on_legs).framed(uprights);
-        let mut views: Vec<_> = (0..count).map(view).collect();
+        let mut views: Vec<_> = (0..count).map(|direction| Turned::new(scene, direction, &on_legs)).collect();
+        views.iter_mut().for_each(|view| view.frame(uprights));
         quarter::see(&mut views, scene, &look);
         Self { look, views, on_legs }
     }
 }
 
-/// What is seen before anything is made of it: all that needs gradients but for racks, which need the specks.
+/// What is seen before anything is made of it.
 pub struct Sight<'a, F> {
     look: Look<'a>,
     views: Vec<Turned>,
@@ -92,25 +92,34 @@ impl<'s, 'a> Sight<'a, Later<'s, Free>> {
     }
 }
 
-impl<'a> Sight<'a, Free> {
-    /// What needs gradients, one after another; nothing is seen between the lines yet.
-    pub fn lined(evidence: &Evidence, Ground { look, space }: Ground<'_, 'a>) -> Self {
+/// What is seen of a map of many pixels that needs gradients, one after another; nothing between the lines yet.
+pub struct Lined<'a> {
+    sight: Sight<'a, Free>,
+    uprights: Vec<Upright>,
+}
+
+impl<'a> Lined<'a> {
+    /// From the lines.
+    pub fn new(evidence: &Evidence, Ground { look, space }: Ground<'_, 'a>) -> Self {
         let free = space.get().map(|space| with_bars(evidence, space));
         let scene = evidence.scene();
         let uprights = uprights::find(&evidence.grid.frame, &evidence.gradients.pixels);
         let on_legs = legs::find(&scene, &uprights);
         let views = map_each(evidence.directions.angles.len(), evidence.threads, |direction| {
-            let mut view = Turned::new(&scene, direction, &on_legs).framed(&uprights);
+            let mut view = Turned::new(&scene, direction, &on_legs);
             view.line(evidence);
             view
         });
-        Self { look: look.get(), views, on_legs, free }
+        Self { sight: Sight { look: look.get(), views, on_legs, free }, uprights }
     }
 
-    /// And what lies between the lines.
-    pub fn seen(mut self, evidence: &Evidence) -> Self {
-        see(evidence, &self.look, &mut self.views);
-        self
+    /// And all else.
+    pub fn seen(self, evidence: &Evidence) -> Sight<'a, Free> {
+        let Self { mut sight, uprights } = self;
+        each(sight.views.iter_mut().collect(), evidence.threads, |view: &mut Turned| view.frame(&uprights));
+        drop(uprights);
+        see(evidence, &sight.look, &mut sight.views);
+        sight
     }
 }
 

@@ -160,10 +160,9 @@ impl Turned {
         (self.cells, self.rows, self.known) = (cells, Arc::new(rows), Known::default());
     }
 
-    /// With what frames among some uprights tell.
-    pub fn framed(mut self, uprights: &[Upright]) -> Self {
+    /// Takes what frames among some uprights tell.
+    pub fn frame(&mut self, uprights: &[Upright]) {
         self.framed = framed::pitch(uprights, self.heading);
-        self
     }
 
     /// Finds what recurs along the lines of what is seen; of the gradients the specks are asked.
