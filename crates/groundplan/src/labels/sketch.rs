@@ -55,7 +55,9 @@ impl<'a> Glance<'a> {
         let on_legs = legs::find(scene, uprights);
         let count = scene.directions.angles.len();
         let mut views: Vec<_> = (0..count).map(|direction| Turned::new(scene, direction, &on_legs)).collect();
-        views.iter_mut().for_each(|view| view.frame(uprights));
+        for view in &mut views {
+            view.frame(uprights);
+        }
         quarter::see(&mut views, scene, &look);
         Self { look, views, on_legs }
     }
