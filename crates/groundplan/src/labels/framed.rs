@@ -175,22 +175,34 @@ fn apart(mut gaps: Vec<Gap>) -> Vec<Gap> {
 struct Cells {
     /// Metres.
     sides: [f64; 2],
-    /// Cell after cell, and in each by number.
-    numbers: Vec<([i64; 2], u32)>,
+    /// The first column, and where each begins.
+    first: i64,
+    starts: Vec<u32>,
+    /// Column after column rows and numbers, ascending.
+    numbers: Vec<(i64, u32)>,
 }
 
 impl Cells {
     fn new(sides: [f64; 2], places: impl Iterator<Item = [f64; 2]>) -> Self {
-        let mut numbers: Vec<_> = (0..).zip(places).map(|(n, place)| (cell(sides, place), n)).collect();
-        numbers.sort_unstable();
-        Self { sides, numbers }
+        let mut cells: Vec<_> = (0..).zip(places).map(|(n, place)| (cell(sides, place), n)).collect();
+        cells.sort_unstable();
+        let first = cells.first().map_or(0, |([column, _], _)| *column);
+        let mut starts = Vec::new();
+        for (n, ([column, _], _)) in cells.iter().enumerate() {
+            starts.resize((column - first) as usize + 1, n as u32);
+        }
+        starts.push(cells.len() as u32);
+        Self { sides, first, starts, numbers: cells.into_iter().map(|([_, row], n)| (row, n)).collect() }
     }
 
     fn around(&self, place: [f64; 2]) -> impl Iterator<Item = usize> {
         let [column, row] = cell(self.sides, place);
         let of_column = move |column: i64| {
-            let from = self.numbers.partition_point(|(cell, _)| *cell < [column, row - 1]);
-            self.numbers[from..].iter().take_while(move |(cell, _)| *cell <= [column, row + 1])
+            let n = usize::try_from(column - self.first).unwrap_or(usize::MAX);
+            let ends = self.starts.get(n).zip(self.starts.get(n.saturating_add(1)));
+            let cells = ends.map_or(&[][..], |(from, to)| &self.numbers[*from as usize..*to as usize]);
+            let from = cells.partition_point(|(other, _)| *other < row - 1);
+            cells[from..].iter().take_while(move |(other, _)| *other <= row + 1)
         };
         (column - 1..=column + 1).flat_map(of_column).map(|(_, n)| *n as usize)
     }

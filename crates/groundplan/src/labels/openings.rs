@@ -8,6 +8,7 @@ use super::sections::{BAY, WIDTH};
 use super::shut;
 use super::stretches;
 use super::turned::Turned;
+use crate::bits::{Bits, WORD, lowest};
 use crate::ends::{sorted, wider};
 use crate::parameters::Parameters;
 use std::ops::Range;
@@ -114,17 +115,22 @@ impl Passing<'_> {
 
     /// How many cells beyond the side are free of each of some columns.
     fn depths(&self, columns: &Range<usize>) -> Vec<usize> {
-        let mut depths = vec![self.most(); columns.len()];
-        let mut open = columns.len();
+        let count = columns.len();
+        let mut depths = vec![self.most(); count];
+        let mut known = Bits::new(count);
         for cells in 0..self.most() {
-            if open == 0 {
-                break;
-            }
             let [low, high] = self.beyond(cells);
-            let taken = self.view.some_blocked(columns.clone(), low, high);
-            for (depth, _) in depths.iter_mut().zip(taken).filter(|(depth, share)| **depth > cells && *share > TAKEN) {
-                *depth = cells;
-                open -= 1;
+            let taken = self.view.blocked_where(columns.clone(), low, high, |share| share > TAKEN);
+            for word in (0..count).step_by(WORD) {
+                let mut first = taken.word(word) & !known.word(word) & lowest(count - word);
+                while first != 0 {
+                    depths[word + first.trailing_zeros() as usize] = cells;
+                    first &= first - 1;
+                }
+            }
+            known |= &taken;
+            if known.count(0..count) == count {
+                break;
             }
         }
         depths

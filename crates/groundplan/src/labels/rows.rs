@@ -202,12 +202,21 @@ impl<'a> Crossings<'a> {
         pieces.into_iter().filter(|(from, to)| to - from >= SHORTEST).map(|(from, to)| [from, to]).collect()
     }
 
-    /// Pieces of a row on one side of a corridor without its mouths, and these: where others lead up to that corridor they
-    /// end in it, and where there is floor between racks they go on to the wall behind. A row in which there is floor
+    /// The corridors of other directions that may reach one.
+    pub fn reaching(&self, n: usize) -> Vec<&Strip> {
+        let own = &self.strips[n];
+        let ground = self.views[own.direction].rectangle(self.extents[n], own.across);
+        let near = self.near.beside(&ground).into_iter().map(|other| &self.strips[other as usize]);
+        near.filter(|other| other.direction != own.direction).collect()
+    }
+
+    /// Pieces of a row on one side of a corridor without the mouths of what reaches that one, and these: where others lead up to
+    /// it they end in it, and where there is floor between racks they go on to the wall behind. A row in which there is floor
     /// elsewhere too has empty bays, and no mouths that one could tell from them.
     pub fn between_mouths(
         &self,
         n: usize,
+        reaching: &[&Strip],
         across: [f64; 2],
         pieces: Vec<(f64, f64)>,
     ) -> (Vec<(f64, f64)>, Vec<[f64; 2]>) {
@@ -231,10 +240,7 @@ impl<'a> Crossings<'a> {
             let [free, all] = floor(wider(*mouth, -view.cell));
             all > 0.0 && free >= (1.0 - CLUTTER) * all
         };
-        let ground = view.rectangle(self.extents[n], own.across);
-        let others = self.near.beside(&ground).into_iter().map(|other| &self.strips[other as usize]);
-        let crossing = others.filter(|other| other.direction != own.direction);
-        let mouths: Vec<_> = crossing.map(end_in).filter(is_open).collect();
+        let mouths: Vec<_> = reaching.iter().map(|other| end_in(other)).filter(is_open).collect();
         if mouths.is_empty() {
             return (pieces, mouths);
         }
