@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -107,6 +108,27 @@ def test_a_setting_as_typed(text: str, value: tuple[str, Any]) -> None:
 def test_every_default_is_in_its_own_range() -> None:
     defaults = {row.name: row.default for row in table()}
     assert resolve(defaults) == resolve({}) == defaults
+
+
+def ends() -> list[tuple[str, float]]:
+    """Every parameter that is a number, with the least value that it takes and the greatest."""
+    ranges = [(row.name, re.fullmatch(r"(\S+) to (\S+?)(, .*)?", row.range)) for row in table()]
+    return [(name, float(found[n])) for name, found in ranges if found for n in (1, 2)]
+
+
+@pytest.mark.parametrize(("name", "value"), ends())
+def test_a_survey_ends_at_either_end_of_a_range(name: str, value: float) -> None:
+    settings = {name: value}
+    is_least = ".min_" in name
+    mate = name.replace(".min_", ".max_") if is_least else name.replace(".max_", ".min_")
+    default = resolve({}).get(mate)
+    if mate != name and default is not None:
+        settings[mate] = max(value, default) if is_least else min(value, default)
+    survey = groundplan.survey(
+        hall(), resolution=0.05, **{key.replace(".", "_", 1): own for key, own in settings.items()}
+    )
+    assert survey.parameters[name] == value
+    assert survey.problems() == []
 
 
 def test_toml_tables_and_dotted_names_are_one(tmp_path: Path) -> None:

@@ -23,6 +23,8 @@ const STEP: f64 = 0.125;
 const GROUP: usize = 2;
 /// So many columns of them are worth a thread's while.
 const TOGETHER: usize = 1 << 17;
+/// None is narrower, metres, however narrow corridors may be.
+const FINEST: f64 = 0.05;
 /// The narrowest with deep sides, metres: what is narrower has its sides nearer than goods are apart.
 const NARROWEST: f64 = 1.2;
 /// The widest is so much of the widest corridor: with what its sides leave it is as wide.
@@ -57,7 +59,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     // Strips, what may hold their sides, and those of them that are asked together first.
     let (mut tried, mut by, mut groups) = (Vec::new(), Vec::new(), Vec::<Range<usize>>::new());
     let mut widest: f64 = 0.0;
-    let mut width = parameters.labels_min_width;
+    let mut width = parameters.labels_min_width.max(FINEST);
     while width <= WIDEST * parameters.labels_max_width {
         let step = (STEP * width).max(view.cell);
         let extent = view.size[1] as f64 * view.cell;
