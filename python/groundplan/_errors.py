@@ -23,7 +23,7 @@ _HINTS = {
     "map.header": _SAVE_AGAIN,
     "map.image": _OF_A_YAML,
     "map.origin": "x and y of the lower left pixel's corner in metres and a yaw in radians, such as [-12.0, -8.5, 0.0]",
-    "map.thresholds": "shares of black: map_saver writes free_thresh 0.25 and occupied_thresh 0.65",
+    "map.thresholds": "shares of black: free_thresh 0.196 and occupied_thresh 0.65 are usual",
     "map.truncated": _SAVE_AGAIN,
     "map.yaml": _OF_A_YAML,
     "point.finite": "numbers, in metres",

@@ -296,10 +296,8 @@ fn find_warnings(survey: &Survey, frame: &Frame, edges: usize, parameters: &Para
         warn("no-structure", "no direction stands out: the map has no straight structure".to_owned());
     } else if directions.explained < LITTLE_EXPLAINED {
         let percent = (100.0 * directions.explained).round();
-        warn(
-            "little-structure",
-            format!("only {percent} percent of the structure lines up along the directions found"),
-        );
+        let share = if percent < 1.0 { "less than 1".to_owned() } else { format!("only {percent}") };
+        warn("little-structure", format!("{share} percent of the structure lines up along the directions found"));
     }
     let pair: f64 = directions.weights.iter().take(2).sum();
     let all: f64 = directions.weights.iter().sum();

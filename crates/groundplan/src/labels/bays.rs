@@ -75,23 +75,25 @@ fn posts(specks: impl Iterator<Item = [f64; 2]>, rows: &[&Row]) -> Vec<Vec<f64>>
         |[[left, right], [low, high]]: [[f64; 2]; 2]| vec![[left, low], [right, low], [right, high], [left, high]];
     let near = Near::polygons(&faces().map(corners).collect::<Vec<_>>());
     let faces: Vec<_> = faces().collect();
+    // A row is short, and may lie far from the places' zero.
+    let step = |u: f64| (u / STEP).round() as i64;
     let mut steps: Vec<Vec<i32>> = vec![Vec::new(); faces.len()];
     specks.for_each(|[u, v]| {
         for &n in near.at([u, v]) {
             let [along, across] = faces[n as usize];
             if holds(along, u) && holds(across, v) {
-                steps[n as usize].push((u / STEP).round() as i32);
+                steps[n as usize].push((step(u) - step(along[0])) as i32);
             }
         }
     });
-    let of_row = |steps: &mut [Vec<i32>]| {
+    let of_row = |(row, steps): (&&Row, &mut [Vec<i32>])| {
         for face in &mut *steps {
             face.sort_unstable();
             face.dedup();
         }
-        steps.iter().flatten().map(|&step| f64::from(step) * STEP).collect()
+        steps.iter().flatten().map(|&n| (step(row.along[0]) + i64::from(n)) as f64 * STEP).collect()
     };
-    steps.chunks_mut(2).map(of_row).collect()
+    rows.iter().zip(steps.chunks_mut(2)).map(of_row).collect()
 }
 
 /// The pitch at which the rows have most power together; the longest of those that are about as good.

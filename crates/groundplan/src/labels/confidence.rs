@@ -129,7 +129,7 @@ impl Looks<'_> {
         let [_, across] = frame_of(axis);
         let mut free = 0.0;
         let mut walled = [0.0; 2];
-        let places = along(axis, STEP);
+        let places = along(axis, self.step());
         for &at in &places {
             free += self.open(at, across, MIDDLE * width);
             for (side, share) in [-1.0, 1.0].into_iter().zip(&mut walled) {
@@ -185,9 +185,9 @@ impl Looks<'_> {
                         && ahead[0].max(ahead[1]) > reach + BEYOND
                 });
                 let depth = if is_arm { ARM } else { ARM.max(widest) };
-                let steps = (depth / STEP).ceil() as usize;
+                let steps = (depth / self.step()).ceil() as usize;
                 let open = (1..=steps)
-                    .map(|n| reach + n as f64 * STEP)
+                    .map(|n| reach + n as f64 * self.step())
                     .map(|t| self.open([at[0] + t * way[0], at[1] + t * way[1]], across, MIDDLE * width))
                     .fold(1.0, f64::min);
                 sure = sure.min(if is_arm || is_other { open } else { 1.0 - open });
@@ -202,7 +202,7 @@ impl Looks<'_> {
         for (n, &from) in polygon.iter().enumerate() {
             let side = [from, polygon[(n + 1) % polygon.len()]];
             let [_, [nx, ny]] = frame_of(side);
-            for [x, y] in along(side, STEP) {
+            for [x, y] in along(side, self.step()) {
                 all += 1;
                 // Counter-clockwise: outside is on the right.
                 let pixel = self.resolution();
@@ -243,7 +243,7 @@ impl Looks<'_> {
     /// both are closed; and both its faces were seen: of what lies behind a face that was not, nobody knows where it ends.
     fn rack(&self, axis: [[f64; 2]; 2], width: f64) -> f64 {
         let [_, across] = frame_of(axis);
-        let places = along(axis, STEP);
+        let places = along(axis, self.step());
         let taken: f64 = places.iter().map(|&at| (2.0 * (1.0 - self.open(at, across, width))).min(1.0)).sum();
         let seen = [-1.0, 1.0].map(|side| {
             let is_seen = |at: &&[f64; 2]| {

@@ -175,8 +175,9 @@ fn apart(mut gaps: Vec<Gap>) -> Vec<Gap> {
 struct Cells {
     /// Metres.
     sides: [f64; 2],
-    /// The first column, and where each begins.
+    /// The first column.
     first: i64,
+    /// Where each column begins, and where the last one ends.
     starts: Vec<u32>,
     /// Column after column rows and numbers, ascending.
     numbers: Vec<(i64, u32)>,
@@ -201,10 +202,10 @@ impl Cells {
             let n = usize::try_from(column - self.first).unwrap_or(usize::MAX);
             let ends = self.starts.get(n).zip(self.starts.get(n.saturating_add(1)));
             let cells = ends.map_or(&[][..], |(from, to)| &self.numbers[*from as usize..*to as usize]);
-            let from = cells.partition_point(|(other, _)| *other < row - 1);
-            cells[from..].iter().take_while(move |(other, _)| *other <= row + 1)
+            let from = cells.partition_point(|(other, _)| *other < row.saturating_sub(1));
+            cells[from..].iter().take_while(move |(other, _)| *other <= row.saturating_add(1))
         };
-        (column - 1..=column + 1).flat_map(of_column).map(|(_, n)| *n as usize)
+        (column.saturating_sub(1)..=column.saturating_add(1)).flat_map(of_column).map(|(_, n)| *n as usize)
     }
 }
 

@@ -78,7 +78,7 @@ impl Legs {
     /// True when a leg of a frame stands at a place along, be the other one not seen.
     pub fn stand_at(&self, u: f64, faces: [f64; 2]) -> bool {
         let own = Self::column(u);
-        self.0.range(own - 1..=own + 1).any(|(_, column)| {
+        self.0.range(own.saturating_sub(1)..=own.saturating_add(1)).any(|(_, column)| {
             faces.iter().any(|face| {
                 let first = column.partition_point(|leg| leg[0] < face - NEAR);
                 column[first..].iter().take_while(|leg| leg[0] <= face + NEAR).any(|leg| (leg[1] - u).abs() <= NEAR)
@@ -89,7 +89,7 @@ impl Legs {
     /// The nearest in line with a leg on one side of it, no further off than an aisle is wide.
     fn next(&self, [u, v]: [f64; 2], side: f64) -> Option<[f64; 2]> {
         let own = Self::column(u);
-        let near = self.0.range(own - 1..=own + 1).filter_map(|(_, column)| {
+        let near = self.0.range(own.saturating_sub(1)..=own.saturating_add(1)).filter_map(|(_, column)| {
             let is_next = |leg: &&[f64; 2]| (leg[1] - u).abs() <= NEAR && (leg[0] - v) * side > LEG / 2.0;
             let first = column.partition_point(|leg| leg[0] <= v);
             if side > 0.0 {

@@ -6,8 +6,9 @@ use crate::grid::{Grid, State};
 use crate::subdivision::distance;
 use std::cell::Cell;
 
-/// Looks are this far apart, metres.
+/// Looks are this far apart, metres, and no nearer than this share of a pixel.
 pub const STEP: f64 = 0.2;
+const FINE: f64 = 0.125;
 /// And so far where what is narrow is looked for, metres.
 const LOOK: f64 = 0.05;
 /// What stands so near to a face is of it, metres.
@@ -41,6 +42,11 @@ impl<'a> Looks<'a> {
         self.grid.frame.resolution
     }
 
+    /// How far looks are apart, metres.
+    pub fn step(&self) -> f64 {
+        STEP.max(FINE * self.resolution())
+    }
+
     pub fn state(&self, point: [f64; 2]) -> State {
         let Some(pixel) = self.grid.pixel_at(point) else { return State::Unknown };
         self.asked.set(self.asked.get().with(pixel));
@@ -53,7 +59,7 @@ impl<'a> Looks<'a> {
 
     /// Free share of a line across a way.
     pub fn open(&self, at: [f64; 2], across: [f64; 2], width: f64) -> f64 {
-        let count = (width / STEP).ceil().max(1.0);
+        let count = (width / self.step()).ceil().max(1.0);
         let offsets = (0..count as usize).map(|n| ((n as f64 + 0.5) / count - 0.5) * width);
         let free = offsets.filter(|v| self.is_free([at[0] + v * across[0], at[1] + v * across[1]])).count();
         free as f64 / count

@@ -210,9 +210,9 @@ impl<'a> Crossings<'a> {
         near.filter(|other| other.direction != own.direction).collect()
     }
 
-    /// Pieces of a row on one side of a corridor without the mouths of what reaches that one, and these: where others lead up to
-    /// it they end in it, and where there is floor between racks they go on to the wall behind. A row in which there is floor
-    /// elsewhere too has empty bays, and no mouths that one could tell from them.
+    /// Pieces of a row on one side of a corridor without the mouths of what reaches that one, and these: where others
+    /// lead up to it they end in it, and where there is floor between racks they go on to the wall behind. A row in
+    /// which there is floor elsewhere too has empty bays, and no mouths that one could tell from them.
     pub fn between_mouths(
         &self,
         n: usize,

@@ -56,7 +56,7 @@ impl<'a> Glance<'a> {
         let count = scene.directions.angles.len();
         let mut views: Vec<_> = (0..count).map(|direction| Turned::new(scene, direction, &on_legs)).collect();
         for view in &mut views {
-            view.frame(uprights);
+            view.take_frames(uprights);
         }
         quarter::see(&mut views, scene, &look);
         Self { look, views, on_legs }
@@ -118,7 +118,7 @@ impl<'a> Lined<'a> {
     /// And all else.
     pub fn seen(self, evidence: &Evidence) -> Sight<'a, Free> {
         let Self { mut sight, uprights } = self;
-        each(sight.views.iter_mut().collect(), evidence.threads, |view: &mut Turned| view.frame(&uprights));
+        each(sight.views.iter_mut().collect(), evidence.threads, |view: &mut Turned| view.take_frames(&uprights));
         drop(uprights);
         see(evidence, &sight.look, &mut sight.views);
         sight

@@ -161,7 +161,7 @@ impl Turned {
     }
 
     /// Takes what frames among some uprights tell.
-    pub fn frame(&mut self, uprights: &[Upright]) {
+    pub fn take_frames(&mut self, uprights: &[Upright]) {
         self.framed = framed::pitch(uprights, self.heading);
     }
 
