@@ -115,6 +115,16 @@ def test_a_pattern_of_bays_lies_on_the_posts() -> None:
         assert off == pytest.approx(round(off), abs=1e-4)
 
 
+def test_racks_have_their_pitch_however_far_from_the_origin_they_stand() -> None:
+    made = simulate.warehouse(seed=0, width=26, depth=18, beams=240, scan_every=0.8).map
+
+    for x in (0.0, 2e8):
+        racks = groundplan.survey(dataclasses.replace(made, origin=(x, 0.0, 0.0))).of_kind("rack")
+        pitches = [rack["pitch"] for rack in racks if rack["pitch"] is not None]
+        assert len(pitches) > 3
+        assert pitches == pytest.approx([2.65] * len(pitches), abs=0.1)
+
+
 def test_patterns_come_back_from_the_file() -> None:
     _, survey = wide()
     assert Survey.from_json(survey.to_json()).patterns == survey.patterns
