@@ -118,7 +118,7 @@ def ends() -> list[tuple[str, float]]:
 
 @pytest.mark.parametrize(("name", "value"), ends())
 def test_a_survey_ends_at_either_end_of_a_range(name: str, value: float) -> None:
-    settings = {name: value}
+    settings: dict[str, Any] = {name: value}
     is_least = ".min_" in name
     mate = name.replace(".min_", ".max_") if is_least else name.replace(".max_", ".min_")
     default = resolve({}).get(mate)
