@@ -116,6 +116,18 @@ def test_ways_that_open_into_one_another_are_one_region(name: str) -> None:
     assert found.of_kind("door") == []
 
 
+@pytest.mark.parametrize("door", [60, 140, 150, 170, 200])
+def test_a_door_in_a_wall_before_the_ends_of_racks_is_found(door: int) -> None:
+    hall = Canvas(1200, 800).room(38, 38, 1162, 762)
+    for low in range(146, 706, 70):
+        hall.box(120, low, 520, low + 44).box(600, low, 1000, low + 44)
+    hall.box(1040, 38, 1044, 240).box(1040, 236, 1162, 240)
+    found = survey(hall.box(1040, door, 1044, door + 20, FREE).picture)
+    (way_in,) = found.of_kind("door")
+    assert way_in["width"] == pytest.approx(1.0, abs=0.1)
+    assert way_in["at"] == pytest.approx([52.1, (door + 10) * RESOLUTION], abs=0.2)
+
+
 def test_the_widest_opening_and_the_least_room_can_be_set() -> None:
     assert len(survey(two_rooms(40).picture).of_kind("region")) == 2
     assert len(survey(two_rooms(40).picture, rooms_openness=0.4).of_kind("region")) == 1

@@ -151,12 +151,11 @@ fn racked(
     // What a rack leaves of the row between two corridors leads from one to the other, and is a way too.
     let racks: BTreeSet<_> = rows.iter().filter_map(|rack| rack.between).collect();
     let left = between.iter().filter(|row| row.between.is_some_and(|pair| racks.contains(&pair)));
-    let grounds = rows
-        .iter()
-        .chain(left)
-        .map(|row| rectangle(&views[row.direction], wider(row.along, RIM), wider(row.across, RIM)));
+    // At its ends it may lead to a wall with a door.
+    let left = left.map(|row| rectangle(&views[row.direction], row.along, wider(row.across, RIM)));
+    let around = |row: &Row| rectangle(&views[row.direction], wider(row.along, RIM), wider(row.across, RIM));
     Racked {
-        ways: corridors.chain(grounds).collect(),
+        ways: corridors.chain(rows.iter().map(around)).chain(left).collect(),
         grounds: rows.iter().map(|row| rectangle(&views[row.direction], row.along, row.across)).collect(),
     }
 }
