@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from _legs import put_posts
-from zoo import Picture, walled
+from zoo import FREE, Canvas, Picture, walled
 
 import groundplan
 from groundplan import simulate
@@ -434,3 +434,21 @@ def test_a_way_through_each_row_is_none_less_where_one_row_is_seen_in_two_pieces
     ways = groundplan.survey(picture, resolution=RESOLUTION).of_kind("corridor")
     across = sorted(way["width"] for way in ways if way["name"].startswith("C"))
     assert across == pytest.approx([3.3] * rows + [4.1] * 2, abs=0.1)
+
+
+@pytest.mark.parametrize(("wall", "end"), [(1040, 240), (1060, 240), (1040, 400)])
+def test_a_way_between_racks_and_an_office_ends_where_it_goes_on_as_a_wider_one(wall: int, end: int) -> None:
+    hall = Canvas(1200, 800).room(38, 38, 1162, 762)
+    for low in range(146, 706, 70):
+        hall.box(120, low, 520, low + 44).box(600, low, 1000, low + 44)
+    hall.box(wall, 38, wall + 4, end).box(wall, end - 4, 1162, end)
+    found = groundplan.survey(hall.box(wall, 100, wall + 4, 120, FREE).picture, resolution=RESOLUTION)
+    behind = [way for way in found.of_kind("corridor") if min(x for x, _ in way["axis"]) > 50]
+    narrow, wide = sorted(behind, key=lambda way: float(way["width"]))
+    assert narrow["width"] == pytest.approx((wall - 1000 + 4) * RESOLUTION, abs=0.2)
+    assert wide["width"] == pytest.approx(7.9, abs=0.3)
+    # Both reach the aisle behind the office; only a junction more is shared at most.
+    (low, lap), (begins, high) = (sorted(y for _, y in way["axis"]) for way in (narrow, wide))
+    assert low == pytest.approx(4.6, abs=0.2) and high == pytest.approx(36.0, abs=0.2)
+    assert end * RESOLUTION < begins <= lap + 0.1 < begins + 4
+    assert all(junction["type"] != "end" for junction in found.of_kind("junction"))

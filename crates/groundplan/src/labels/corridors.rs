@@ -11,7 +11,7 @@ use super::ragged::{self, Ways};
 use super::turned::Turned;
 use super::{Evidence, mouths, panes};
 use crate::bands::map_each;
-use crate::ends::holds;
+use crate::ends::{holds, shared};
 use crate::sparing::is_large;
 
 /// A strip of free space along one direction, in the direction's own places (metres along and across).
@@ -33,9 +33,11 @@ pub struct Strip {
     pub stops: [bool; 2],
     /// Where it begins and ends without what lies beyond a gap longer than a bay and is no more than a speck, along.
     pub held: [f64; 2],
+    /// Between which ends it was found, before it was led on to what it meets, along.
+    pub found: [f64; 2],
 }
 
-/// Of a strip of which it is not told what of it is held.
+/// Of a strip of which it is not told what of it is held, or that was not led on.
 pub const UNTOLD: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 impl Strip {
@@ -57,6 +59,17 @@ impl Strip {
     /// True when another is as wide.
     pub fn is_as_wide(&self, other: &Self) -> bool {
         (self.width() - other.width()).abs() <= ALIKE * self.width().max(other.width())
+    }
+
+    /// As it was found, before it was led on to what it meets.
+    pub fn as_found(&self) -> Self {
+        Self { along: shared(self.along, self.found), ..self.clone() }
+    }
+
+    /// True when it is a wider one over another's middle, along the same direction.
+    pub fn is_wider_over(&self, other: &Self) -> bool {
+        let is_in_line = self.direction == other.direction && holds(self.across, other.middle());
+        is_in_line && self.width() > other.width() && !self.is_as_wide(other)
     }
 
     /// Its direction and its places, as [`placed`] takes them.

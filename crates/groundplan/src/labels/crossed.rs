@@ -439,6 +439,7 @@ mod tests {
             is_ragged: false,
             stops: [false; 2],
             held: UNTOLD,
+            found: UNTOLD,
         }
     }
 

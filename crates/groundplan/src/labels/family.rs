@@ -72,6 +72,7 @@ impl Candidate {
             is_ragged: false,
             stops: [false; 2],
             held: UNTOLD,
+            found: UNTOLD,
         }
     }
 }

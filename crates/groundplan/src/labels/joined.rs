@@ -49,8 +49,9 @@ pub fn join(views: &[Turned], mut strips: Vec<Strip>, least: f64) -> Vec<Strip> 
             let is_ragged = strips[a].is_ragged || strips[b].is_ragged;
             let held = [strips[a].held[0], strips[b].held[1]];
             let stops = [strips[a].stops[0], strips[b].stops[1]];
+            let found = [strips[a].found[0], strips[b].found[1]];
             let direction = strips[a].direction;
-            strips[a] = Strip { direction, along, across, score, bays, is_ragged, stops, held };
+            strips[a] = Strip { direction, along, across, score, bays, is_ragged, stops, held, found };
             placed[direction].add(a, along, across);
             wholes.join(a as u32, b as u32);
         }

@@ -82,6 +82,7 @@ mod through;
 mod turned;
 mod uprights;
 mod whole;
+mod widening;
 mod widths;
 
 pub use confidence::find_confidence;

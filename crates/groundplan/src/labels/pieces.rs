@@ -2,7 +2,7 @@
 
 use super::barriers;
 use super::columns::{self, BAY, Column, NARROWED, Side, Walled, count};
-use super::corridors::Strip;
+use super::corridors::{Strip, UNTOLD};
 use super::family::Family;
 use super::runs::{best_pieces, runs};
 use super::shares::{BARRED, IMPASSABLE};
@@ -169,6 +169,7 @@ impl Family<'_> {
             bays: self.is_like_bays(&columns[from..to], width),
             is_ragged: false,
             stops: [false; 2],
+            found: UNTOLD,
             held: self.held(&columns[from..to]).map(|column| view.along(first + from + column)),
         };
         let long = |(from, to): &(usize, usize)| self.is_long(to - from, across);

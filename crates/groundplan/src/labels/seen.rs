@@ -130,5 +130,6 @@ pub fn way([view, other]: [&Turned; 2], row: &Row, middles: [f64; 2], [from, to]
         is_ragged: false,
         stops: [false; 2],
         held: UNTOLD,
+        found: UNTOLD,
     }
 }

@@ -31,10 +31,11 @@ use super::slots;
 use super::turned::Turned;
 use super::uprights::{self, Upright};
 use super::whole;
+use super::widening;
 use super::widths;
 use super::{Evidence, Ground, Scene};
 use crate::bands::{Later, Side, each, map_each};
-use crate::ends::{both, wider};
+use crate::ends::{both, shared, wider};
 
 /// What the map shows without its faces.
 pub struct Sketch {
@@ -284,7 +285,8 @@ impl Plan {
 
     /// With what its ways leave of others.
     fn with(self, views: &[Turned], others: &[Strip], least: f64, threads: usize) -> Self {
-        let more: Vec<Strip> = others.iter().filter_map(|way| ragged::clear_of(way, &self.strips)).collect();
+        let found: Vec<Strip> = self.strips.iter().map(Strip::as_found).collect();
+        let more: Vec<Strip> = others.iter().filter_map(|way| ragged::clear_of(way, &found)).collect();
         if more.is_empty() {
             return self;
         }
@@ -300,8 +302,10 @@ impl Plan {
         // A corridor goes on to what it meets, and there it may be what another one meets.
         let longer = extents(views, &strips, &meetings);
         for (strip, along) in strips.iter_mut().zip(longer) {
+            strip.found = shared(strip.found, strip.along);
             strip.along = both(strip.along, along);
         }
+        let strips = widening::up_to(views, &strips, &meetings);
         let (strips, meetings) = connected::of(views, strips, threads);
         let mut extents = extents(views, &strips, &meetings);
         let ends = junctions::ends(views, &strips, &meetings);

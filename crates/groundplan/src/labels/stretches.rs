@@ -394,6 +394,7 @@ pub fn ragged(view: &Turned, along: [f64; 2], across: [f64; 2], score: f64) -> S
         is_ragged: true,
         stops: [false; 2],
         held: UNTOLD,
+        found: UNTOLD,
     }
 }
 
