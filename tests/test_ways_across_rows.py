@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from _legs import put_posts
-from zoo import FREE, Canvas, Picture, walled
+from zoo import FREE, UNKNOWN, Canvas, Picture, walled
 
 import groundplan
 from groundplan import simulate
@@ -452,3 +452,45 @@ def test_a_way_between_racks_and_an_office_ends_where_it_goes_on_as_a_wider_one(
     assert low == pytest.approx(4.6, abs=0.2) and high == pytest.approx(36.0, abs=0.2)
     assert end * RESOLUTION < begins <= lap + 0.1 < begins + 4
     assert all(junction["type"] != "end" for junction in found.of_kind("junction"))
+
+
+def solid_rows(
+    depth: float, openings: list[list[float]], gap: float = 2.8
+) -> tuple[Picture, list[tuple[float, float]]]:
+    """Solid rows of 40 m between aisles of 2.5 m, open at some places, and where aisles meet the ways there."""
+    aisle, head, length = 2.5, 3.5, 40.0
+    height = aisle + len(openings) * (depth + aisle)
+    width = length + 2 * head
+
+    def pixels(*metres: float) -> list[int]:
+        return [round((at + 1) / RESOLUTION) for at in metres]
+
+    hall = Canvas(*pixels(width + 1, height + 1))
+    hall.box(*pixels(-0.1, -0.1, width + 0.1, height + 0.1)).box(*pixels(0, 0, width, height), FREE)
+    meets = []
+    for number, own in enumerate(openings):
+        low = aisle + number * (depth + aisle)
+        middles = [head + at for at in own]
+        starts = [head, *(middle + gap / 2 for middle in middles)]
+        ends = [*(middle - gap / 2 for middle in middles), head + length]
+        for start, end in zip(starts, ends, strict=True):
+            hall.box(*pixels(start, low, end, low + depth))
+            hall.box(*pixels(start + 0.1, low + 0.1, end - 0.1, low + depth - 0.1), UNKNOWN)
+        meets += [(1 + at, 1 + y) for at in middles for y in (low - aisle / 2, low + depth + aisle / 2)]
+    return hall.picture, meets
+
+
+@pytest.mark.parametrize("depth", [1.0, 2.0])
+@pytest.mark.parametrize(
+    "openings", [[[8, 30], [14], [22, 34], [18]], [[14], [26], [20], []], [[], [14, 22], [], [8, 19]]]
+)
+def test_what_is_open_of_solid_rows_is_a_way_though_not_each_has_as_many(
+    depth: float, openings: list[list[float]]
+) -> None:
+    picture, meets = solid_rows(depth, openings)
+    found = groundplan.survey(picture, resolution=RESOLUTION)
+    junctions = [junction["at"] for junction in found.of_kind("junction") if junction["type"] in "TX"]
+    for meet in meets:
+        assert min(np.hypot(*np.subtract(at, meet)) for at in junctions) < 0.3
+    ways = [way for way in found.of_kind("corridor") if way["width"] == pytest.approx(2.8, abs=0.12)]
+    assert len(ways) == sum(len(own) for own in openings)

@@ -41,7 +41,7 @@ const FREE: f64 = 0.12;
 /// been hit.
 const OUTLINED: f64 = 0.7;
 /// Structure this near to a face stands on it, metres.
-const FACE: f64 = 0.25;
+pub const FACE: f64 = 0.25;
 
 /// A row's columns, leaning as the direction does that its uprights stand along.
 pub struct Columns<'a> {

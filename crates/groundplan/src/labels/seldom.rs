@@ -3,7 +3,7 @@
 
 use super::rows::Row;
 use super::runs::runs;
-use super::sections::LEFT;
+use super::sections::{FACE, LEFT};
 use super::turned::Turned;
 
 /// Two racks back to back are so deep, metres.
@@ -22,6 +22,8 @@ const UNLIKELY: f64 = 0.01;
 const UNLIKELY_IN_FULL: f64 = 0.1;
 /// What is open of a half for less, metres, is between its goods.
 const SHELF: f64 = 0.5;
+/// Something stands along so much of the faces of rows without bays.
+const SOLID: f64 = 0.97;
 
 /// True when a row may be of two racks.
 pub fn is_double(row: &Row) -> bool {
@@ -59,16 +61,18 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f
 /// True when rows side by side are each open at as many places of a width, as where a way leads through each, and so little
 /// else of their halves is that as many would hardly be by chance: no shelves are empty there.
 pub fn are_full_elsewhere<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f64) -> bool {
-    let (mut ways, mut free, mut all) = (Vec::new(), 0, 0);
+    let (mut ways, mut free, mut all, mut faced) = (Vec::new(), 0, 0, 0);
     let [least, most] = [AS_WIDE * width / view.cell, width / AS_WIDE / view.cell + ENDS as f64];
     for row in rows {
         let mut halves = open_halves(view, row);
         let count = halves[0].len();
-        let is_within = |&(from, to): &(usize, usize)| from > 0 && to < count;
-        let is_as_wide = |&(from, to): &(usize, usize)| (least..=most).contains(&((to - from) as f64));
-        let open: Vec<_> = runs(&both_open(&halves), true).into_iter().filter(is_within).filter(is_as_wide).collect();
+        // Past its ends a row is open too: ways lead there.
+        let is_past_end = |&(from, to): &(usize, usize)| from == 0 || to == count;
+        let is_as_wide = |(from, to): &(usize, usize)| (least..=most).contains(&((to - from) as f64));
+        let (ends, within): (Vec<_>, Vec<_>) = runs(&both_open(&halves), true).into_iter().partition(is_past_end);
+        let open: Vec<_> = within.into_iter().filter(is_as_wide).collect();
         let mut is_elsewhere = vec![true; count];
-        for &(from, to) in &open {
+        for &(from, to) in ends.iter().chain(&open) {
             let beside = from.saturating_sub(ENDS)..(to + ENDS).min(count);
             is_elsewhere[beside.clone()].fill(false);
             for half in &mut halves {
@@ -76,9 +80,18 @@ pub fn are_full_elsewhere<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>
             }
         }
         ways.push(open.len());
+        let first = view.column(row.along[0]);
+        for face in row.across {
+            let stands = view.some_occupied(first..first + count, face - FACE, face + FACE);
+            faced += stands.iter().zip(&is_elsewhere).filter(|(share, is)| **share > 0.0 && **is).count();
+        }
         all += 2 * is_elsewhere.into_iter().filter(|is| *is).count();
         let lengths = halves.iter().flat_map(|half| runs(half, true)).map(|(from, to)| to - from);
         free += lengths.filter(|length| *length as f64 >= SHELF / view.cell).sum::<usize>();
+    }
+    // Rows that nothing of is open, and along which something stands all the way, have no bays that could be empty.
+    if free == 0 && faced as f64 >= SOLID * all as f64 {
+        return true;
     }
     if ways.iter().any(|n| *n != ways[0]) {
         return false;
