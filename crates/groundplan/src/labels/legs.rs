@@ -11,7 +11,7 @@ use super::rows::Row;
 use super::uprights::Upright;
 use crate::bands::{map_each, worth};
 use crate::directions::Directions;
-use crate::ends::{both, holds, overlap};
+use crate::ends::{both, holds, overlap, sorted, wider};
 use crate::grid::{Grid, State};
 use std::collections::BTreeMap;
 
@@ -35,6 +35,8 @@ const STEP: f64 = 0.1;
 /// much of its depth.
 const LEANING: usize = 2;
 const LOST: f64 = 0.5;
+/// A wall across a row is seen over so much of it.
+const WALL: f64 = 0.9;
 
 /// Frames in a row.
 #[derive(Clone, Debug)]
@@ -53,7 +55,9 @@ pub fn find(scene: &Scene, uprights: &[Upright]) -> Vec<Row> {
         let heading = [libm::cos(angle), libm::sin(angle)];
         let (frames, legs) = frames(uprights, heading);
         let map = Map { grid, heading };
-        let mut found: Vec<Rack> = in_rows(&frames, &legs).iter().map(|row| rack(direction, row, &legs)).collect();
+        let rows = in_rows(&frames, &legs);
+        let is_walled = |along: [f64; 2], across| map.is_walled(along, across);
+        let mut found: Vec<Rack> = rows.iter().map(|row| rack(direction, row, &legs, is_walled)).collect();
         found.retain(|rack| blocks::is_oblong(&rack.row) && map.shows_floor(&rack.row));
         let found = back_to_back(found);
         let mut found: Vec<Rack> = found.iter().filter(|rack| is_kind(rack, &found)).cloned().collect();
@@ -144,8 +148,9 @@ fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs) -> Vec<Vec<Frame>> {
     pieces.filter(|piece| piece.len() >= FRAMES).map(<[Frame]>::to_vec).collect()
 }
 
-/// The rack of some frames, with those at its ends of which one leg was not seen.
-fn rack(direction: usize, row: &[Frame], legs: &Legs) -> Rack {
+/// The rack of some frames, with those at its ends of which one leg was not seen, unless a wall parts them from it: specks
+/// lie behind that.
+fn rack(direction: usize, row: &[Frame], legs: &Legs, is_walled: impl Fn([f64; 2], [f64; 2]) -> bool) -> Rack {
     let [first, last] = [row[0].at, row[row.len() - 1].at];
     let bays = gap(row).map_or(1.0, |gap| ((last - first) / gap).round().max(1.0));
     let pitch = (last - first) / bays;
@@ -153,7 +158,7 @@ fn rack(direction: usize, row: &[Frame], legs: &Legs) -> Rack {
     let across = [mean(0), mean(1)];
     let beyond = |from: f64, by: f64| {
         let mut off = 0.0;
-        while legs.stand_at(from + off + by, across) {
+        while legs.stand_at(from + off + by, across) && !is_walled(sorted([from + off, from + off + by]), across) {
             off += by;
         }
         off
@@ -205,6 +210,14 @@ impl Map<'_> {
         let is_taken = |v: &f64| steps([at - NEAR, at + NEAR]).any(|u| self.state([u, *v]) == State::Occupied);
         let taken = steps(faces).filter(is_taken).count();
         taken as f64 >= LOST * steps(faces).count() as f64
+    }
+
+    /// True when a wall runs across a row and past both its faces somewhere between two places along it, or where it ends.
+    fn is_walled(&self, along: [f64; 2], faces: [f64; 2]) -> bool {
+        let is_occupied = |u: f64, v: f64| self.state([u, v]) == State::Occupied;
+        let is_taken = |at: f64, v: f64| steps([at - NEAR, at + NEAR]).any(|u| is_occupied(u, v));
+        let across = || steps(wider(faces, FRONT[1]));
+        steps(along).any(|at| across().filter(|&v| is_taken(at, v)).count() as f64 >= WALL * across().count() as f64)
     }
 
     /// True when floor shows before one of a rack's faces.
@@ -265,7 +278,16 @@ mod tests {
         let places = [0.0, 0.0, 0.1, 2.0, 2.0, 4.0, 4.05, 6.0];
         let rows = at_one_pitch(places.map(frame).to_vec(), &legs);
         assert_eq!(rows.len(), 1);
-        let rack = rack(0, &rows[0], &legs);
+        let rack = rack(0, &rows[0], &legs, |_, _| false);
         assert_eq!((rack.frames, rack.pitch, rack.row.along), (4, 2.0, [0.0, 6.0]));
+    }
+
+    #[test]
+    fn a_rack_goes_on_to_a_leg_by_itself_but_not_past_a_wall() {
+        let leg = |u: f64| Upright { at: [u, 0.0], spread: [0.0; 3] };
+        let row = [0.0, 2.0, 4.0].map(|at| Frame { at, faces: [0.0, 1.1] });
+        let (_, legs) = frames(&[leg(-2.0), leg(6.0)], [1.0, 0.0]);
+        let along = |wall: f64| rack(0, &row, &legs, |along, _| holds(along, wall)).row.along;
+        assert_eq!([along(9.0), along(5.0), along(-1.0)], [[-2.0, 6.0], [-2.0, 4.0], [0.0, 6.0]]);
     }
 }

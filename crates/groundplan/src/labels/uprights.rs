@@ -17,7 +17,7 @@ pub struct Upright {
     /// Its middle in the map frame.
     pub at: [f64; 2],
     /// Variances of its pixels' places, of x, of both and of y, square metres.
-    spread: [f64; 3],
+    pub(super) spread: [f64; 3],
 }
 
 impl Upright {
