@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import zoo
 from PIL import Image
-from zoo import OPEN, PADDED, RESOLUTION, TURNS, ZOO
+from zoo import FREE, OCCUPIED, OPEN, PADDED, RESOLUTION, TURNS, ZOO
 
 import groundplan
 from groundplan import Directions, GroundplanError, Lines, MapError, ParameterError
@@ -171,6 +171,14 @@ def test_a_map_without_structure_is_one_face_and_warnings(name: str) -> None:
     assert len(found.subdivision.areas) == 1
     assert found.warnings
     assert {label["kind"] for label in found.labels} <= {"region"}
+
+
+def test_what_hardly_lines_up_is_not_said_to_be_nothing() -> None:
+    specks = np.random.default_rng(5).random((400, 400)) < 0.1
+    picture = np.where(specks, OCCUPIED, FREE).astype(np.uint8)
+    found = groundplan.survey(picture, resolution=RESOLUTION, directions_angles_deg=[30.0])
+    said = {warning.code: warning.message for warning in found.warnings}
+    assert said["little-structure"].startswith("less than 1 percent of the structure")
 
 
 def test_parameters_in_force_are_kept() -> None:

@@ -58,7 +58,7 @@ fn find(
     let beside = |n: usize| {
         let (strip, mut found) = (&strips[n], Vec::new());
         let view = &views[strip.direction];
-        let reaching = crossings.reaching(n);
+        let reached = crossings.reached(n);
         for side in [0, 1] {
             let own = strip.across[side];
             let mut open = vec![(extents[n][0], extents[n][1])];
@@ -78,7 +78,7 @@ fn find(
                 let far = view.offsets[line];
                 let across = sorted([own, far]);
                 let row = |along| Row { direction: strip.direction, along, across, between: None };
-                let (pieces, mouths) = crossings.between_mouths(n, &reaching, across, open.clone());
+                let (pieces, mouths) = reached.between_mouths(across, open.clone());
                 let rows = crossings.uncrossed(strip.direction, across, pieces).into_iter().map(row);
                 let rows = rows.filter_map(|row| trimmed(view, &row, before(&row, side)));
                 let rows: Vec<Row> = rows

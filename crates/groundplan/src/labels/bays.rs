@@ -70,11 +70,11 @@ pub fn find(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Option<P
 
 /// Where specks, which have places along and across, stand on the faces of some rows, along, row by row.
 fn posts(specks: impl Iterator<Item = [f64; 2]>, rows: &[&Row]) -> Vec<Vec<f64>> {
-    let faces = || rows.iter().flat_map(|row| row.across.map(|face| [row.along, wider([face; 2], NEAR)]));
+    let ground = |row: &&Row| row.across.map(|face| [row.along, wider([face; 2], NEAR)]);
+    let faces: Vec<[[f64; 2]; 2]> = rows.iter().flat_map(ground).collect();
     let corners =
-        |[[left, right], [low, high]]: [[f64; 2]; 2]| vec![[left, low], [right, low], [right, high], [left, high]];
-    let near = Near::polygons(&faces().map(corners).collect::<Vec<_>>());
-    let faces: Vec<_> = faces().collect();
+        |&[[left, right], [low, high]]: &[[f64; 2]; 2]| vec![[left, low], [right, low], [right, high], [left, high]];
+    let near = Near::polygons(&faces.iter().map(corners).collect::<Vec<_>>());
     // A row is short, and may lie far from the places' zero.
     let step = |u: f64| (u / STEP).round() as i64;
     let mut steps: Vec<Vec<i32>> = vec![Vec::new(); faces.len()];

@@ -34,7 +34,7 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], threads: u
     rows.extend(flat_map_each(strips.len(), threads, |n| {
         let (strip, mut rows) = (&strips[n], Vec::new());
         let view = &views[strip.direction];
-        let reaching = crossings.reaching(n);
+        let reached = crossings.reached(n);
         for side in [0, 1] {
             // What of the side no nearer corridor has taken yet.
             let mut open = vec![(extents[n][0], extents[n][1])];
@@ -49,7 +49,7 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], threads: u
                 }
                 let across = if side == 1 { [own, own + depth] } else { [own - depth, own] };
                 let row = |along| Row { direction: strip.direction, along, across, between: None };
-                let (pieces, mouths) = crossings.between_mouths(n, &reaching, across, open.clone());
+                let (pieces, mouths) = reached.between_mouths(across, open.clone());
                 let pieces = crossings.uncrossed(strip.direction, across, pieces);
                 let is_row = |row: &Row| {
                     let is_outlined = || blocks::is_oblong(row) && is_outlined(view, row);

@@ -202,29 +202,33 @@ impl<'a> Crossings<'a> {
         pieces.into_iter().filter(|(from, to)| to - from >= SHORTEST).map(|(from, to)| [from, to]).collect()
     }
 
-    /// The corridors of other directions that may reach one.
-    pub fn reaching(&self, n: usize) -> Vec<&Strip> {
+    /// A corridor with those that may reach it.
+    pub fn reached(&self, n: usize) -> Reached<'_> {
         let own = &self.strips[n];
         let ground = self.views[own.direction].rectangle(self.extents[n], own.across);
         let near = self.near.beside(&ground).into_iter().map(|other| &self.strips[other as usize]);
-        near.filter(|other| other.direction != own.direction).collect()
+        Reached { crossings: self, n, by: near.filter(|other| other.direction != own.direction).collect() }
     }
+}
 
-    /// Pieces of a row on one side of a corridor without the mouths of what reaches that one, and these: where others
+/// A corridor, and those of other directions that may reach it.
+pub struct Reached<'a> {
+    crossings: &'a Crossings<'a>,
+    n: usize,
+    by: Vec<&'a Strip>,
+}
+
+impl Reached<'_> {
+    /// Pieces of a row on one side of the corridor without the mouths of what reaches it, and these: where others
     /// lead up to it they end in it, and where there is floor between racks they go on to the wall behind. A row in
     /// which there is floor elsewhere too has empty bays, and no mouths that one could tell from them.
-    pub fn between_mouths(
-        &self,
-        n: usize,
-        reaching: &[&Strip],
-        across: [f64; 2],
-        pieces: Vec<(f64, f64)>,
-    ) -> (Vec<(f64, f64)>, Vec<[f64; 2]>) {
-        let own = &self.strips[n];
-        let view = &self.views[own.direction];
+    pub fn between_mouths(&self, across: [f64; 2], pieces: Vec<(f64, f64)>) -> (Vec<(f64, f64)>, Vec<[f64; 2]>) {
+        let Crossings { views, strips, extents, .. } = self.crossings;
+        let own = &strips[self.n];
+        let view = &views[own.direction];
         let end_in = |other: &Strip| {
-            let ends = across_row(view, &self.views[other.direction], other, across).map(|[_, u]| u);
-            shared(ends, self.extents[n])
+            let ends = across_row(view, &views[other.direction], other, across).map(|[_, u]| u);
+            shared(ends, extents[self.n])
         };
         // What stands on its near face is of it, and a wall at its far one may be.
         let [low, high] = across;
@@ -240,7 +244,7 @@ impl<'a> Crossings<'a> {
             let [free, all] = floor(wider(*mouth, -view.cell));
             all > 0.0 && free >= (1.0 - CLUTTER) * all
         };
-        let mouths: Vec<_> = reaching.iter().map(|other| end_in(other)).filter(is_open).collect();
+        let mouths: Vec<_> = self.by.iter().map(|other| end_in(other)).filter(is_open).collect();
         if mouths.is_empty() {
             return (pieces, mouths);
         }
