@@ -128,6 +128,20 @@ def test_a_door_in_a_wall_before_the_ends_of_racks_is_found(door: int) -> None:
     assert way_in["at"] == pytest.approx([52.1, (door + 10) * RESOLUTION], abs=0.2)
 
 
+@pytest.mark.parametrize("wall", [1, 3, 6])
+def test_doors_in_a_thin_wall_along_an_aisle_are_found(wall: int) -> None:
+    hall = Canvas(960, 680).room(40, 40, 920, 640).box(40, 480, 920, 480 + wall)
+    for x in (260, 480, 700):
+        hall.box(x, 480, x + 2, 640)
+    for low in (392, 304, 216):
+        hall.box(110, low, 850, low + 28)
+    for x in (140, 360, 580, 800):
+        hall.box(x, 480, x + 18, 480 + wall, FREE)
+    found = survey(hall.picture)
+    assert len(found.of_kind("rack")) == 3 and len(found.of_kind("region")) == 5
+    assert [door["width"] for door in found.of_kind("door")] == pytest.approx([0.9] * 4, abs=0.06)
+
+
 def test_the_widest_opening_and_the_least_room_can_be_set() -> None:
     assert len(survey(two_rooms(40).picture).of_kind("region")) == 2
     assert len(survey(two_rooms(40).picture, rooms_openness=0.4).of_kind("region")) == 1

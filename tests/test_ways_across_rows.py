@@ -483,14 +483,18 @@ def solid_rows(
     return hall.picture, meets
 
 
+@pytest.mark.parametrize("has_niche", [False, True])
 @pytest.mark.parametrize("depth", [1.0, 2.0])
 @pytest.mark.parametrize(
     "openings", [[[8, 30], [14], [22, 34], [18]], [[14], [26], [20], []], [[], [14, 22], [], [8, 19]]]
 )
 def test_what_is_open_of_solid_rows_is_a_way_though_not_each_has_as_many(
-    depth: float, openings: list[list[float]]
+    depth: float, openings: list[list[float]], has_niche: bool
 ) -> None:
     picture, meets = solid_rows(depth, openings)
+    if has_niche:  # of 0.7 m, from half the depth of the lowest row to its upper face
+        low, high = (round((3.5 + share * depth) / RESOLUTION) for share in (0.5, 1))
+        picture[-high:-low, 480:494] = FREE
     found = groundplan.survey(picture, resolution=RESOLUTION)
     junctions = [junction["at"] for junction in found.of_kind("junction") if junction["type"] in "TX"]
     for meet in meets:

@@ -290,4 +290,20 @@ mod tests {
         let along = |wall: f64| rack(0, &row, &legs, |along, _| holds(along, wall)).row.along;
         assert_eq!([along(9.0), along(5.0), along(-1.0)], [[-2.0, 6.0], [-2.0, 4.0], [0.0, 6.0]]);
     }
+
+    #[test]
+    fn a_wall_across_a_row_runs_past_both_its_faces() {
+        use crate::grid::{Frame, Table};
+        // A wall of one pixel at x = 5 from edge to edge, and a rack's end as deep as the row at x = 2: free 0, occupied 1.
+        let mut pixels = vec![0; 100 * 60];
+        (0..60).for_each(|y| pixels[y * 100 + 50] = 1);
+        (20..31).for_each(|y| pixels[y * 100 + 20] = 1);
+        let (mut values, mut states) = ([0; 256], [0; 256]);
+        (values[1], states[1]) = (100, 1);
+        let table = Table::new(&values, &states);
+        let grid = Grid::new(&pixels, true, &table, Frame::new(100, 60, 0.1, [0.0; 3]));
+        let map = Map { grid: &grid, heading: [1.0, 0.0] };
+        let is_walled = |along| map.is_walled(along, [2.0, 3.1]);
+        assert_eq!([[0.5, 4.5], [3.0, 5.5], [3.0, 4.95], [6.0, 9.0]].map(is_walled), [false, true, true, false]);
+    }
 }

@@ -55,7 +55,7 @@ impl<'a> Place<'a> {
 
 impl Place<'_> {
     /// True when the rows that something passes through are with those side by side with them open more often than by chance:
-    /// of two racks each, or hardly open elsewhere.
+    /// of two racks each, or hardly open elsewhere, or solid.
     pub fn is_open_through(&self, strips: &[Strip], own: &Passing, width: f64) -> bool {
         let is_as_wide = |&aisle: &usize| width >= NARROWER * strips[self.aisles[aisle]].width();
         let may_be_led_through = |&row: &usize| {
@@ -63,9 +63,12 @@ impl Place<'_> {
             seldom::is_double(row) && between.iter().all(is_as_wide)
         };
         let Some(first) = self.first_of(own) else { return false };
-        let rows = self.rows_with(first);
-        let rows = || rows.iter().map(|&row| &self.rows[row].0);
-        own.is_within && seldom::are_full_elsewhere(self.views[0], rows(), width)
+        let part = self.rows_with(first);
+        let rows = || part.iter().map(|&row| &self.rows[row].0);
+        let is_whole = |&way: &usize| self.passing[way].is_within && self.passing[way].is_whole();
+        let is_led_through = || part.iter().any(|&row| self.through[row].iter().any(is_whole));
+        let may_be_bay = self.pitch_of(own).is_some_and(|pitch| is_as_bays(width, pitch)) || is_led_through();
+        own.is_within && seldom::are_full_elsewhere(self.views[0], rows(), width, may_be_bay)
             || own.rows.iter().all(may_be_led_through) && seldom::are_open(self.views[0], rows(), width)
     }
 

@@ -22,7 +22,7 @@ const OUTLINED: (f64, f64) = (0.5, 0.05);
 /// No robot comes through a gap that is narrower, metres.
 pub const WAY_IN: f64 = 0.5;
 /// A place has racks when it has so many, and so many metres of them for a metre of corridor.
-const PLACE: (usize, f64) = (3, 0.25);
+const PLACE: (usize, f64) = (3, 0.29);
 
 /// The rows between the corridors and at the outer sides of them, the longest first.
 pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], threads: usize) -> Vec<Row> {

@@ -5,6 +5,7 @@ use super::rows::Row;
 use super::runs::runs;
 use super::sections::{FACE, LEFT};
 use super::turned::Turned;
+use std::ops::Range;
 
 /// Two racks back to back are so deep, metres.
 const TWO: f64 = 1.5;
@@ -22,8 +23,10 @@ const UNLIKELY: f64 = 0.01;
 const UNLIKELY_IN_FULL: f64 = 0.1;
 /// What is open of a half for less, metres, is between its goods.
 const SHELF: f64 = 0.5;
-/// Something stands along so much of the faces of rows without bays.
-const SOLID: f64 = 0.97;
+/// Something stands along so much of the faces of solid rows, and no more than so much of their halves is open.
+const SOLID: (f64, f64) = (0.95, 0.01);
+/// One or two places at which they are open may be shelves that are empty.
+const SEVERAL: usize = 3;
 
 /// True when a row may be of two racks.
 pub fn is_double(row: &Row) -> bool {
@@ -59,47 +62,87 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f
 }
 
 /// True when rows side by side are each open at as many places of a width, as where a way leads through each, and so little
-/// else of their halves is that as many would hardly be by chance: no shelves are empty there.
-pub fn are_full_elsewhere<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f64) -> bool {
-    let (mut ways, mut free, mut all, mut faced) = (Vec::new(), 0, 0, 0);
+/// else of their halves is that as many would hardly be by chance: no shelves are empty there. Nor are they where rows stand
+/// solid, however many places each is open at, if what is so wide may be no bay.
+pub fn are_full_elsewhere<'a>(
+    view: &Turned,
+    rows: impl Iterator<Item = &'a Row>,
+    width: f64,
+    may_be_bay: bool,
+) -> bool {
     let [least, most] = [AS_WIDE * width / view.cell, width / AS_WIDE / view.cell + ENDS as f64];
-    for row in rows {
-        let mut halves = open_halves(view, row);
-        let count = halves[0].len();
-        // Past its ends a row is open too: ways lead there.
-        let is_past_end = |&(from, to): &(usize, usize)| from == 0 || to == count;
-        let is_as_wide = |(from, to): &(usize, usize)| (least..=most).contains(&((to - from) as f64));
-        let (ends, within): (Vec<_>, Vec<_>) = runs(&both_open(&halves), true).into_iter().partition(is_past_end);
-        let open: Vec<_> = within.into_iter().filter(is_as_wide).collect();
-        let mut is_elsewhere = vec![true; count];
-        for &(from, to) in ends.iter().chain(&open) {
-            let beside = from.saturating_sub(ENDS)..(to + ENDS).min(count);
-            is_elsewhere[beside.clone()].fill(false);
-            for half in &mut halves {
-                half[beside.clone()].fill(false);
-            }
-        }
-        ways.push(open.len());
-        let first = view.column(row.along[0]);
-        for face in row.across {
-            let stands = view.some_occupied(first..first + count, face - FACE, face + FACE);
-            faced += stands.iter().zip(&is_elsewhere).filter(|(share, is)| **share > 0.0 && **is).count();
-        }
-        all += 2 * is_elsewhere.into_iter().filter(|is| *is).count();
-        let lengths = halves.iter().flat_map(|half| runs(half, true)).map(|(from, to)| to - from);
-        free += lengths.filter(|length| *length as f64 >= SHELF / view.cell).sum::<usize>();
-    }
-    // Rows that nothing of is open, and along which something stands all the way, have no bays that could be empty.
-    if free == 0 && faced as f64 >= SOLID * all as f64 {
+    let as_wide = |length: usize| (least..=most).contains(&(length as f64));
+    let all: Vec<Elsewhere> = rows.map(|row| Elsewhere::new(view, row, as_wide)).collect();
+    let free = all.iter().map(|row| row.free).sum::<usize>() as f64;
+    let faces = all.iter().map(|row| row.faces).sum::<usize>() as f64;
+    let stands = || all.iter().map(|row| row.stands(view)).sum::<usize>() as f64;
+    let open: usize = all.iter().map(|row| row.open).sum();
+    if !may_be_bay && open >= SEVERAL && faces > 0.0 && free <= SOLID.1 * faces && stands() >= SOLID.0 * faces {
         return true;
     }
-    if ways.iter().any(|n| *n != ways[0]) {
+    if all.iter().any(|row| row.open != all[0].open) {
         return false;
     }
     // Half a place more is open and one more is there, as so few tell little.
-    let [free, all, own] = [free as f64, all as f64, width / view.cell];
-    let share = (free + 0.5 * own) / (all + own);
-    chance(ways.iter().sum(), all / 2.0 / own * share * share) < UNLIKELY_IN_FULL
+    let own = width / view.cell;
+    let share = (free + 0.5 * own) / (faces + own);
+    chance(open, faces / 2.0 / own * share * share) < UNLIKELY_IN_FULL
+}
+
+/// A row but for where it is open from aisle to aisle at some width, and past its ends.
+struct Elsewhere<'a> {
+    row: &'a Row,
+    /// At how many places it is open so.
+    open: usize,
+    /// Which of its columns lie elsewhere, how many these are of both its halves, and over how many a half is open there.
+    columns: Vec<bool>,
+    faces: usize,
+    free: usize,
+}
+
+impl<'a> Elsewhere<'a> {
+    fn new(view: &Turned, row: &'a Row, is_as_wide: impl Fn(usize) -> bool) -> Self {
+        let mut halves = open_halves(view, row);
+        let count = halves[0].len();
+        let (mut columns, mut open) = (vec![true; count], 0);
+        for (from, to) in runs(&both_open(&halves), true) {
+            // Past its ends nothing stands, in empty bays there do posts.
+            let is_end = from == 0 || to == count;
+            let is_left_out =
+                if is_end { !on_faces(view, row, from + ENDS..to.saturating_sub(ENDS)) } else { is_as_wide(to - from) };
+            if is_left_out {
+                open += usize::from(!is_end);
+                let beside = from.saturating_sub(ENDS)..(to + ENDS).min(count);
+                columns[beside.clone()].fill(false);
+                for half in &mut halves {
+                    half[beside.clone()].fill(false);
+                }
+            }
+        }
+        let faces = 2 * columns.iter().filter(|is| **is).count();
+        let lengths = halves.iter().flat_map(|half| runs(half, true)).map(|(from, to)| to - from);
+        let free = lengths.filter(|length| *length as f64 >= SHELF / view.cell).sum();
+        Self { row, open, columns, faces, free }
+    }
+
+    /// Over how many columns something stands at one of its faces.
+    fn stands(&self, view: &Turned) -> usize {
+        let first = view.column(self.row.along[0]);
+        let at = |face: f64| {
+            let stands = view.some_occupied(first..first + self.columns.len(), face - FACE, face + FACE);
+            stands.iter().zip(&self.columns).filter(|(share, is)| **share > 0.0 && **is).count()
+        };
+        self.row.across.into_iter().map(at).sum()
+    }
+}
+
+/// True when something stands at a row's faces in some of its columns.
+fn on_faces(view: &Turned, row: &Row, columns: Range<usize>) -> bool {
+    let first = view.column(row.along[0]);
+    let columns = first + columns.start..first + columns.end.max(columns.start);
+    let stands =
+        |face: f64| view.some_occupied(columns.clone(), face - FACE, face + FACE).iter().any(|share| *share > 0.0);
+    row.across.into_iter().any(stands)
 }
 
 /// In which columns each half of a row is open.

@@ -20,6 +20,8 @@ use std::collections::BTreeSet;
 
 /// So far round a rack there are no doors, metres.
 const RIM: f64 = 0.4;
+/// So far within a corridor's sides there may be some, metres.
+const SIDE: f64 = 0.15;
 
 /// The labels that a sketch shows, with the faces that lie in them: the division is waited for when all else is known of
 /// them. And what is asked of some as soon as they are known: of corridors, junctions and racks together, of regions and
@@ -146,7 +148,8 @@ fn racked(
     along.dedup();
     let corridors = along.into_iter().map(|n| {
         let strip = &strips[n];
-        rectangle(&views[strip.direction], extents[n], strip.across)
+        // A wall that is thin has its line, and doors have theirs, where the corridor ends.
+        rectangle(&views[strip.direction], extents[n], wider(strip.across, -SIDE.min(strip.width() / 4.0)))
     });
     // What a rack leaves of the row between two corridors leads from one to the other, and is a way too.
     let racks: BTreeSet<_> = rows.iter().filter_map(|rack| rack.between).collect();
