@@ -484,11 +484,11 @@ def solid_rows(
 
 
 @pytest.mark.parametrize("has_niche", [False, True])
-@pytest.mark.parametrize("depth", [1.0, 2.0])
+@pytest.mark.parametrize("depth", [1.8, 2.4])
 @pytest.mark.parametrize(
     "openings", [[[8, 30], [14], [22, 34], [18]], [[14], [26], [20], []], [[], [14, 22], [], [8, 19]]]
 )
-def test_what_is_open_of_solid_rows_is_a_way_though_not_each_has_as_many(
+def test_what_is_open_of_solid_rows_of_two_racks_is_a_way_though_not_each_has_as_many(
     depth: float, openings: list[list[float]], has_niche: bool
 ) -> None:
     picture, meets = solid_rows(depth, openings)

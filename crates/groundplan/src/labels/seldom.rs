@@ -62,8 +62,8 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f
 }
 
 /// True when rows side by side are each open at as many places of a width, as where a way leads through each, and so little
-/// else of their halves is that as many would hardly be by chance: no shelves are empty there. Nor are they where rows stand
-/// solid, however many places each is open at, if what is so wide may be no bay.
+/// else of their halves is that as many would hardly be by chance: no shelves are empty there. Nor are they where rows of two
+/// racks stand solid, however many places each is open at, if what is so wide may be no bay.
 pub fn are_full_elsewhere<'a>(
     view: &Turned,
     rows: impl Iterator<Item = &'a Row>,
@@ -77,7 +77,8 @@ pub fn are_full_elsewhere<'a>(
     let faces = all.iter().map(|row| row.faces).sum::<usize>() as f64;
     let stands = || all.iter().map(|row| row.stands(view)).sum::<usize>() as f64;
     let open: usize = all.iter().map(|row| row.open).sum();
-    if !may_be_bay && open >= SEVERAL && faces > 0.0 && free <= SOLID.1 * faces && stands() >= SOLID.0 * faces {
+    let are_shut = faces > 0.0 && free <= SOLID.1 * faces && all.iter().all(|row| is_double(row.row));
+    if !may_be_bay && open >= SEVERAL && are_shut && stands() >= SOLID.0 * faces {
         return true;
     }
     if all.iter().any(|row| row.open != all[0].open) {
