@@ -118,6 +118,18 @@ def test_narrow_rows_on_a_coarse_map_are_measured_where_staircases_look_like_oth
     assert_square(degrees, racks, 1.2 * float(np.hypot(length, depth)), length=length, depth=depth, wall=0.2)
 
 
+def test_walls_and_rack_ends_along_a_hall_of_650_metres_are_its_second_direction() -> None:
+    length, width = 13000, 1400
+    free = np.full((width, length), zoo.FREE, np.uint8)
+    for rack in range(100, length - 100, 104):
+        for first, last in ((60, 660), (760, 1360)):
+            free[first:last, rack : rack + 44] = zoo.OCCUPIED
+            free[first + 2 : last - 2, rack + 2 : rack + 42] = zoo.UNKNOWN
+    hall = np.full((width + 6, length + 6), zoo.OCCUPIED, np.uint8)
+    hall[3:-3, 3:-3] = free
+    assert angles_of(hall) == pytest.approx([90.0, 0.0], abs=1e-3)
+
+
 @pytest.mark.parametrize("wall", [0.3, 0.32, 0.36, 0.4])
 @pytest.mark.parametrize("degrees", [35.0, 37.2, 40.2, 41.6, 48.6, 53.0, 55.0])
 def test_cross_walls_of_a_hall_turned_by_much_are_square_to_its_racks(degrees: float, wall: float) -> None:

@@ -102,6 +102,9 @@ pub(crate) const SCAN_DEG: f64 = 3.0;
 const STEP_DEG: f64 = 0.5;
 /// While the best is at the end of what was looked at it goes on, by so many steps at most.
 const FURTHER: i32 = 6;
+/// What is looked for is known so well that what is furthest away moves by no more than so many pixels, before it is asked whether
+/// it is worth more: a line that is spread over more than that may not stand out of its background (`aligned.rs`).
+const KNOWN_PIXELS: f64 = 10.0;
 /// So many pixels say where the sharpest is; how sharp it is there takes all.
 const SAMPLE: usize = 4096;
 /// Steps get smaller until what is furthest away moves by no more than so many pixels.
@@ -110,7 +113,8 @@ const FINEST_PIXELS: f64 = 0.1;
 const MOVES: usize = 4;
 
 /// The angle near `start` at which the projection of pixels is sharpest, on a map of so many pixels from corner to
-/// corner; none where it is not `worth` the search, which is asked when the angle is known to half a degree.
+/// corner; none where it is not `worth` the search, which is asked when the angle is known to half a degree, and better on a
+/// map that is large.
 ///
 /// What lines up over a length of l pixels is spread over l sin(a) bins at an angle a beside its own, so sharpness falls
 /// off as 1 / a, and halved steps climb to its top.
@@ -126,7 +130,12 @@ pub(crate) fn sharpest(
     let mut best = scan(start, |angle| some.roughly_at(angle));
     let mut step = STEP_DEG.to_radians() / 2.0;
     best.climb(step, |angle| some.roughly_at(angle));
-    if !worth(best.angle) {
+    let (mut known, mut finer) = (best, step);
+    while finer / 2.0 * diagonal > KNOWN_PIXELS {
+        finer /= 2.0;
+        known.climb(finer, |angle| some.roughly_at(angle));
+    }
+    if !worth(known.angle) {
         return None;
     }
     best.value = some.at(best.angle);
@@ -164,6 +173,7 @@ fn scan(start: f64, mut sharpness: impl FnMut(f64) -> f64) -> Best {
 }
 
 /// The sharpest so far.
+#[derive(Clone, Copy)]
 struct Best {
     angle: f64,
     value: f64,
