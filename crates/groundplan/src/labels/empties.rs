@@ -3,7 +3,7 @@
 
 use super::corridors::Strip;
 use super::passing::Place;
-use super::runs::runs;
+use super::runs::{Run, length, outside};
 use super::seldom;
 use super::widths::are_alike;
 use std::collections::BTreeSet;
@@ -46,24 +46,24 @@ pub fn have_empty_bays(place: &Place, strips: &[Strip], rows: &BTreeSet<usize>, 
 
 /// True when a row is open all across a strip, were that longer.
 fn is_open_at(place: &Place, strip: &Strip, row: usize) -> bool {
-    let open = seldom::open(place.views[0], &place.rows[row].0);
     let [from, to] = columns(place, strip, row, -NEAR);
-    from < to && open[from..to].iter().all(|is| *is)
+    let holds = |run: &Run| run.0 <= from && to <= run.1;
+    from < to && place.shelves(row).open().iter().any(holds)
 }
 
 /// How many columns of a row are open over as much as a width, and how many there are, both without those of its ways.
 fn open_besides(place: &Place, strips: &[Strip], row: usize, width: f64) -> [usize; 2] {
-    let view = place.views[0];
-    let mut open = seldom::open(view, &place.rows[row].0);
-    let mut is_rest = vec![true; open.len()];
-    for &way in &place.through[row] {
-        let [from, to] = columns(place, &strips[way], row, NEAR);
-        is_rest[from..to].fill(false);
-    }
-    open.iter_mut().zip(&is_rest).for_each(|(open, is)| *open &= is);
-    let least = (seldom::AS_WIDE * width / view.cell) as usize;
-    let wide = runs(&open, true).into_iter().map(|(from, to)| to - from).filter(|length| *length >= least);
-    [wide.sum(), is_rest.iter().filter(|is| **is).count()]
+    let shelves = place.shelves(row);
+    let mut ways: Vec<Run> = place.through[row]
+        .iter()
+        .map(|&way| columns(place, &strips[way], row, NEAR))
+        .map(|[from, to]| (from, to))
+        .collect();
+    ways.retain(|(from, to)| from < to);
+    ways.sort_unstable();
+    let least = (seldom::AS_WIDE * width / place.views[0].cell) as usize;
+    let wide = outside(&shelves.open(), &ways).into_iter().filter(|(from, to)| to - from >= least);
+    [length(wide), length(outside(&[(0, shelves.count())], &ways))]
 }
 
 /// From which to which of a row's columns a strip would cross it, and so much more on either side, metres.

@@ -66,6 +66,7 @@ mod sections;
 mod seen;
 mod seldom;
 mod shares;
+mod shelves;
 mod shut;
 mod sided;
 mod sketch;

@@ -7,6 +7,7 @@ use super::gates::{crossing, leading_across};
 use super::rows::{self, Row};
 use super::sections::is_as_bays;
 use super::seldom;
+use super::shelves::Shelves;
 use super::turned::Turned;
 use super::whole;
 use crate::ends::{holds, overlap, wider};
@@ -33,6 +34,8 @@ pub struct Place<'a> {
     walls: Vec<bool>,
     /// From post to post along each row, once it is asked.
     pitches: Vec<OnceCell<Option<f64>>>,
+    /// What of each row is open, once it is asked.
+    shelves: Vec<OnceCell<Shelves>>,
 }
 
 impl<'a> Place<'a> {
@@ -47,7 +50,8 @@ impl<'a> Place<'a> {
             let (passing, through) = layout.passed_by(views, strips, &placed, &along);
             let Layout { aisles, rows, beside, walls, .. } = layout;
             let pitches = rows.iter().map(|_| OnceCell::new()).collect();
-            Some(Self { views, aisles, rows, passing, through, beside, walls, pitches })
+            let shelves = rows.iter().map(|_| OnceCell::new()).collect();
+            Some(Self { views, aisles, rows, passing, through, beside, walls, pitches, shelves })
         };
         all.into_iter().filter_map(of).collect()
     }
@@ -64,12 +68,23 @@ impl Place<'_> {
         };
         let Some(first) = self.first_of(own) else { return false };
         let part = self.rows_with(first);
-        let rows = || part.iter().map(|&row| &self.rows[row].0);
-        let is_whole = |&way: &usize| self.passing[way].is_within && self.passing[way].is_whole();
-        let is_led_through = || part.iter().any(|&row| self.through[row].iter().any(is_whole));
-        let may_be_bay = self.pitch_of(own).is_some_and(|pitch| is_as_bays(width, pitch)) || is_led_through();
+        let rows = || part.iter().map(|&row| self.shelves(row));
+        let may_be_bay = || {
+            self.pitch_of(own).is_some_and(|pitch| is_as_bays(width, pitch)) || !self.lead_through_all(&part).is_empty()
+        };
         own.is_within && seldom::are_full_elsewhere(self.views[0], rows(), width, may_be_bay)
             || own.rows.iter().all(may_be_led_through) && seldom::are_open(self.views[0], rows(), width)
+    }
+
+    /// What leads through all rows of a part of the place, between their ends.
+    pub fn lead_through_all(&self, part: &BTreeSet<usize>) -> BTreeSet<usize> {
+        let ways = part.iter().flat_map(|&row| &self.through[row]).copied();
+        ways.filter(|&way| self.passing[way].is_within && self.passing[way].is_whole()).collect()
+    }
+
+    /// What of a row is open.
+    pub fn shelves(&self, row: usize) -> &Shelves {
+        self.shelves[row].get_or_init(|| Shelves::new(self.views[0], &self.rows[row].0))
     }
 
     /// From post to post along the rows that something passes through, metres, as about the first of them.

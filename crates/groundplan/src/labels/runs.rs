@@ -2,6 +2,9 @@
 
 use std::ops::AddAssign;
 
+/// From one on, up to another.
+pub type Run = (usize, usize);
+
 /// All maximal pieces with the greatest sums (Ruzzo and Tompa 1999): from, to.
 pub fn best_pieces<T: Copy + Default + PartialOrd + AddAssign>(scores: &[T]) -> Vec<(usize, usize)> {
     struct Piece<T> {
@@ -57,7 +60,7 @@ pub fn close(flags: &mut [bool], longest: usize) {
 }
 
 /// Runs of flags that are `wanted`: from, to.
-pub fn runs(flags: &[bool], wanted: bool) -> Vec<(usize, usize)> {
+pub fn runs(flags: &[bool], wanted: bool) -> Vec<Run> {
     let mut found = Vec::new();
     let mut from = next(flags, 0, wanted);
     while from < flags.len() {
@@ -66,6 +69,49 @@ pub fn runs(flags: &[bool], wanted: bool) -> Vec<(usize, usize)> {
         from = next(flags, to, wanted);
     }
     found
+}
+
+/// What two lists of runs, each in order, have in common.
+pub fn common(one: &[Run], two: &[Run]) -> Vec<Run> {
+    let mut found = Vec::new();
+    let (mut n, mut m) = (0, 0);
+    while n < one.len() && m < two.len() {
+        let (from, to) = (one[n].0.max(two[m].0), one[n].1.min(two[m].1));
+        if from < to {
+            found.push((from, to));
+        }
+        if one[n].1 < two[m].1 {
+            n += 1;
+        } else {
+            m += 1;
+        }
+    }
+    found
+}
+
+/// What of some runs lies outside others, all in the order of their beginnings; of the others some may overlap.
+pub fn outside(some: &[Run], others: &[Run]) -> Vec<Run> {
+    let (mut found, mut next) = (Vec::new(), 0);
+    for &(mut from, to) in some {
+        while others.get(next).is_some_and(|other| other.1 <= from) {
+            next += 1;
+        }
+        for other in others[next..].iter().take_while(|other| other.0 < to) {
+            if from < other.0 {
+                found.push((from, other.0));
+            }
+            from = from.max(other.1);
+        }
+        if from < to {
+            found.push((from, to));
+        }
+    }
+    found
+}
+
+/// How many flags are in some runs.
+pub fn length(runs: impl IntoIterator<Item = Run>) -> usize {
+    runs.into_iter().map(|(from, to)| to - from).sum()
 }
 
 /// The next flag that is `wanted`, from one on, or the end.
@@ -80,4 +126,27 @@ fn next(flags: &[bool], from: usize, wanted: bool) -> usize {
         at += MANY;
     }
     flags[at..].iter().position(|&flag| flag == wanted).map_or(flags.len(), |n| at + n)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_runs_have_in_common_and_what_lies_outside_is_as_flags_say() {
+        for seed in 0..500u64 {
+            let flags = |n: u64| -> Vec<bool> {
+                let bits = (seed * 2 + n + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+                (0..40).map(|place| bits >> (20 + place) & (bits >> (3 + place)) & 1 == n).collect()
+            };
+            let (one, two) = (flags(0), flags(1));
+            let together = |is: fn(bool, bool) -> bool| -> Vec<bool> {
+                one.iter().zip(&two).map(|(one, two)| is(*one, *two)).collect()
+            };
+            let [own, others] = [&one, &two].map(|flags| runs(flags, true));
+            assert_eq!(common(&own, &others), runs(&together(|one, two| one && two), true));
+            assert_eq!(outside(&own, &others), runs(&together(|one, two| one && !two), true));
+        }
+        assert_eq!(outside(&[(0, 9)], &[(1, 4), (3, 6)]), [(0, 1), (6, 9)]);
+    }
 }

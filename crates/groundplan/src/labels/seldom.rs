@@ -2,17 +2,14 @@
 //! empty the other seldom is as well, unless a way leads through both; and where hardly a shelf is empty no whole bay is.
 
 use super::rows::Row;
-use super::runs::runs;
-use super::sections::{FACE, LEFT};
+use super::runs::Run;
+use super::shelves::{ENDS, Elsewhere, Shelves};
 use super::turned::Turned;
-use std::ops::Range;
 
 /// Two racks back to back are so deep, metres.
 const TWO: f64 = 1.5;
 /// What is open over so much of a width is as wide.
 pub const AS_WIDE: f64 = 0.85;
-/// So many cells on either side of what is open are of its ends.
-const ENDS: usize = 2;
 /// Shorter ones, in widths, have no room for a way between racks.
 const LONG: f64 = 2.0;
 /// Fewer such rows tell nothing.
@@ -35,28 +32,26 @@ pub fn is_double(row: &Row) -> bool {
 
 /// True when each of several rows side by side that are of two racks is open at a place of a width, and all are at as many as
 /// they would hardly be by chance if each rack were empty where it is, whatever the other is.
-pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f64) -> bool {
+pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Shelves>, width: f64) -> bool {
     let (mut half_open, mut open, mut places) = (0, 0, 0.0);
-    let rows: Vec<&Row> = rows.filter(|row| is_double(row) && row.length() >= LONG * width).collect();
+    let is_long = |shelves: &&Shelves| is_double(&shelves.row) && shelves.row.length() >= LONG * width;
+    let rows: Vec<&Shelves> = rows.filter(is_long).collect();
     if rows.len() < ROWS {
         return false;
     }
-    for row in rows {
-        let halves = open_halves(view, row);
-        let count = halves[0].len();
-        let least = (AS_WIDE * width / view.cell).ceil().max(1.0) as usize;
-        let as_wide = |flags: &[bool]| {
-            let within = runs(flags, true).into_iter().filter(|&(from, to)| from > 0 && to < count);
+    let least = (AS_WIDE * width / view.cell).ceil().max(1.0) as usize;
+    for shelves in rows {
+        let as_wide = |runs: &[Run]| {
+            let within = runs.iter().filter(|run| !shelves.is_end(**run));
             within.map(|(from, to)| (to - from) / least).sum::<usize>()
         };
-        let both = both_open(&halves);
-        let own = as_wide(&both);
+        let own = as_wide(&shelves.open());
         if own == 0 {
             return false;
         }
         open += own;
-        half_open += halves.iter().map(|half| as_wide(half).saturating_sub(own)).sum::<usize>();
-        places += row.length() / width;
+        half_open += shelves.halves.iter().map(|half| as_wide(half).saturating_sub(own)).sum::<usize>();
+        places += shelves.row.length() / width;
     }
     is_more_than_chance(open, half_open as f64, places)
 }
@@ -66,19 +61,19 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Row>, width: f
 /// racks stand solid, however many places each is open at, if what is so wide may be no bay.
 pub fn are_full_elsewhere<'a>(
     view: &Turned,
-    rows: impl Iterator<Item = &'a Row>,
+    rows: impl Iterator<Item = &'a Shelves>,
     width: f64,
-    may_be_bay: bool,
+    may_be_bay: impl Fn() -> bool,
 ) -> bool {
     let [least, most] = [AS_WIDE * width / view.cell, width / AS_WIDE / view.cell + ENDS as f64];
     let as_wide = |length: usize| (least..=most).contains(&(length as f64));
-    let all: Vec<Elsewhere> = rows.map(|row| Elsewhere::new(view, row, as_wide)).collect();
-    let free = all.iter().map(|row| row.free).sum::<usize>() as f64;
-    let faces = all.iter().map(|row| row.faces).sum::<usize>() as f64;
+    let all: Vec<Elsewhere> = rows.map(|shelves| shelves.elsewhere(view, as_wide)).collect();
+    let free = all.iter().map(|row| row.free(SHELF / view.cell)).sum::<usize>() as f64;
+    let faces = 2.0 * all.iter().map(Elsewhere::columns).sum::<usize>() as f64;
     let stands = || all.iter().map(|row| row.stands(view)).sum::<usize>() as f64;
     let open: usize = all.iter().map(|row| row.open).sum();
-    let are_shut = faces > 0.0 && free <= SOLID.1 * faces && all.iter().all(|row| is_double(row.row));
-    if !may_be_bay && open >= SEVERAL && are_shut && stands() >= SOLID.0 * faces {
+    let are_shut = faces > 0.0 && free <= SOLID.1 * faces && all.iter().all(|row| is_double(&row.shelves.row));
+    if open >= SEVERAL && are_shut && stands() >= SOLID.0 * faces && !may_be_bay() {
         return true;
     }
     if all.iter().any(|row| row.open != all[0].open) {
@@ -88,81 +83,6 @@ pub fn are_full_elsewhere<'a>(
     let own = width / view.cell;
     let share = (free + 0.5 * own) / (faces + own);
     chance(open, faces / 2.0 / own * share * share) < UNLIKELY_IN_FULL
-}
-
-/// A row but for where it is open from aisle to aisle at some width, and past its ends.
-struct Elsewhere<'a> {
-    row: &'a Row,
-    /// At how many places it is open so.
-    open: usize,
-    /// Which of its columns lie elsewhere, how many these are of both its halves, and over how many a half is open there.
-    columns: Vec<bool>,
-    faces: usize,
-    free: usize,
-}
-
-impl<'a> Elsewhere<'a> {
-    fn new(view: &Turned, row: &'a Row, is_as_wide: impl Fn(usize) -> bool) -> Self {
-        let mut halves = open_halves(view, row);
-        let count = halves[0].len();
-        let (mut columns, mut open) = (vec![true; count], 0);
-        for (from, to) in runs(&both_open(&halves), true) {
-            // Past its ends nothing stands, in empty bays there do posts.
-            let is_end = from == 0 || to == count;
-            let is_left_out =
-                if is_end { !on_faces(view, row, from + ENDS..to.saturating_sub(ENDS)) } else { is_as_wide(to - from) };
-            if is_left_out {
-                open += usize::from(!is_end);
-                let beside = from.saturating_sub(ENDS)..(to + ENDS).min(count);
-                columns[beside.clone()].fill(false);
-                for half in &mut halves {
-                    half[beside.clone()].fill(false);
-                }
-            }
-        }
-        let faces = 2 * columns.iter().filter(|is| **is).count();
-        let lengths = halves.iter().flat_map(|half| runs(half, true)).map(|(from, to)| to - from);
-        let free = lengths.filter(|length| *length as f64 >= SHELF / view.cell).sum();
-        Self { row, open, columns, faces, free }
-    }
-
-    /// Over how many columns something stands at one of its faces.
-    fn stands(&self, view: &Turned) -> usize {
-        let first = view.column(self.row.along[0]);
-        let at = |face: f64| {
-            let stands = view.some_occupied(first..first + self.columns.len(), face - FACE, face + FACE);
-            stands.iter().zip(&self.columns).filter(|(share, is)| **share > 0.0 && **is).count()
-        };
-        self.row.across.into_iter().map(at).sum()
-    }
-}
-
-/// True when something stands at a row's faces in some of its columns.
-fn on_faces(view: &Turned, row: &Row, columns: Range<usize>) -> bool {
-    let first = view.column(row.along[0]);
-    let columns = first + columns.start..first + columns.end.max(columns.start);
-    let stands =
-        |face: f64| view.some_occupied(columns.clone(), face - FACE, face + FACE).iter().any(|share| *share > 0.0);
-    row.across.into_iter().any(stands)
-}
-
-/// In which columns each half of a row is open.
-fn open_halves(view: &Turned, row: &Row) -> [Vec<bool>; 2] {
-    let columns = view.column(row.along[0])..view.column(row.along[1]);
-    let middle = f64::midpoint(row.across[0], row.across[1]);
-    [[row.across[0], middle], [middle, row.across[1]]].map(|[low, high]| {
-        let blocked = view.blocked_where(columns.clone(), low, high, |share| share > LEFT);
-        (0..columns.len()).map(|n| !blocked.get(n)).collect()
-    })
-}
-
-/// In which columns a row is open from aisle to aisle.
-pub fn open(view: &Turned, row: &Row) -> Vec<bool> {
-    both_open(&open_halves(view, row))
-}
-
-fn both_open([one, two]: &[Vec<bool>; 2]) -> Vec<bool> {
-    one.iter().zip(two).map(|(one, two)| *one && *two).collect()
 }
 
 /// True when both racks would hardly be empty at so many of all places by chance, where one of them is at so many more.

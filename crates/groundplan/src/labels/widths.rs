@@ -55,9 +55,7 @@ impl Widths {
 
     /// Of what leads through all of some rows one beside another, between their ends.
     pub fn of_whole(place: &Place, strips: &[Strip], rows: &BTreeSet<usize>) -> Self {
-        let ways: BTreeSet<usize> = rows.iter().flat_map(|&row| &place.through[row]).copied().collect();
-        let is_whole = |way: &&usize| place.passing[**way].is_within && place.passing[**way].is_whole();
-        Self(ways.iter().filter(is_whole).map(|&way| strips[way].width()).collect())
+        Self(place.lead_through_all(rows).into_iter().map(|way| strips[way].width()).collect())
     }
 
     /// With one more.
