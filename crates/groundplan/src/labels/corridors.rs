@@ -61,9 +61,9 @@ impl Strip {
         (self.width() - other.width()).abs() <= ALIKE * self.width().max(other.width())
     }
 
-    /// As it was found, before it was led on to what it meets.
-    pub fn as_found(&self) -> Self {
-        Self { along: shared(self.along, self.found), ..self.clone() }
+    /// From where to where of it was found, before it was led on to what it meets.
+    pub fn found_along(&self) -> [f64; 2] {
+        shared(self.along, self.found)
     }
 
     /// True when it is a wider one over another's middle, along the same direction.

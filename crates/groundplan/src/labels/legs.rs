@@ -56,8 +56,7 @@ pub fn find(scene: &Scene, uprights: &[Upright]) -> Vec<Row> {
         let (frames, legs) = frames(uprights, heading);
         let map = Map { grid, heading };
         let rows = in_rows(&frames, &legs);
-        let is_walled = |along: [f64; 2], across| map.is_walled(along, across);
-        let mut found: Vec<Rack> = rows.iter().map(|row| rack(direction, row, &legs, is_walled)).collect();
+        let mut found: Vec<Rack> = rows.iter().map(|row| rack(direction, row, &legs, &map)).collect();
         found.retain(|rack| blocks::is_oblong(&rack.row) && map.shows_floor(&rack.row));
         let found = back_to_back(found);
         let mut found: Vec<Rack> = found.iter().filter(|rack| is_kind(rack, &found)).cloned().collect();
@@ -150,7 +149,7 @@ fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs) -> Vec<Vec<Frame>> {
 
 /// The rack of some frames, with those at its ends of which one leg was not seen, unless a wall parts them from it: specks
 /// lie behind that.
-fn rack(direction: usize, row: &[Frame], legs: &Legs, is_walled: impl Fn([f64; 2], [f64; 2]) -> bool) -> Rack {
+fn rack(direction: usize, row: &[Frame], legs: &Legs, map: &Map) -> Rack {
     let [first, last] = [row[0].at, row[row.len() - 1].at];
     let bays = gap(row).map_or(1.0, |gap| ((last - first) / gap).round().max(1.0));
     let pitch = (last - first) / bays;
@@ -158,7 +157,7 @@ fn rack(direction: usize, row: &[Frame], legs: &Legs, is_walled: impl Fn([f64; 2
     let across = [mean(0), mean(1)];
     let beyond = |from: f64, by: f64| {
         let mut off = 0.0;
-        while legs.stand_at(from + off + by, across) && !is_walled(sorted([from + off, from + off + by]), across) {
+        while legs.stand_at(from + off + by, across) && !map.is_walled(sorted([from + off, from + off + by]), across) {
             off += by;
         }
         off
@@ -207,32 +206,36 @@ impl Map<'_> {
 
     /// True when something stands across so much of a row's depth at a place along it.
     fn stands(&self, at: f64, faces: [f64; 2]) -> bool {
-        let is_taken = |v: &f64| steps([at - NEAR, at + NEAR]).any(|u| self.state([u, *v]) == State::Occupied);
-        let taken = steps(faces).filter(is_taken).count();
-        taken as f64 >= LOST * steps(faces).count() as f64
+        let is_taken = |v: &f64| steps([at - NEAR, at + NEAR], STEP).any(|u| self.state([u, *v]) == State::Occupied);
+        let taken = steps(faces, STEP).filter(is_taken).count();
+        taken as f64 >= LOST * steps(faces, STEP).count() as f64
     }
 
     /// True when a wall runs across a row and past both its faces somewhere between two places along it, or where it ends.
     fn is_walled(&self, along: [f64; 2], faces: [f64; 2]) -> bool {
         let is_occupied = |u: f64, v: f64| self.state([u, v]) == State::Occupied;
-        let is_taken = |at: f64, v: f64| steps([at - NEAR, at + NEAR]).any(|u| is_occupied(u, v));
-        let across = || steps(wider(faces, FRONT[1]));
-        steps(along).any(|at| across().filter(|&v| is_taken(at, v)).count() as f64 >= WALL * across().count() as f64)
+        // A wall may be a single pixel thick and lie askew to the pixels.
+        let finer = STEP.min(self.grid.frame.resolution / 2.0);
+        let is_taken = |at: f64, v: f64| steps([at - NEAR, at + NEAR], finer).any(|u| is_occupied(u, v));
+        let across = || steps(wider(faces, FRONT[1]), STEP);
+        steps(along, STEP)
+            .any(|at| across().filter(|&v| is_taken(at, v)).count() as f64 >= WALL * across().count() as f64)
     }
 
     /// True when floor shows before one of a rack's faces.
     fn shows_floor(&self, row: &Row) -> bool {
         [(row.across[0], -1.0), (row.across[1], 1.0)].into_iter().any(|(face, side)| {
-            let places = || steps(row.along).flat_map(|u| steps(FRONT).map(move |off| [u, face + side * off]));
+            let places =
+                || steps(row.along, STEP).flat_map(|u| steps(FRONT, STEP).map(move |off| [u, face + side * off]));
             let free = places().filter(|&place| self.state(place) == State::Free).count();
             free as f64 >= FLOOR * places().count() as f64
         })
     }
 }
 
-/// Places from one to another.
-fn steps([from, to]: [f64; 2]) -> impl Iterator<Item = f64> + Clone {
-    let count = ((to - from) / STEP).ceil().max(1.0) as usize;
+/// Places from one to another, no farther apart than a step.
+fn steps([from, to]: [f64; 2], step: f64) -> impl Iterator<Item = f64> + Clone {
+    let count = ((to - from) / step).ceil().max(1.0) as usize;
     (0..=count).map(move |n| from + (to - from) * n as f64 / count as f64)
 }
 
@@ -270,40 +273,65 @@ fn is_kind(rack: &Rack, all: &[Rack]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grid::{Frame as MapFrame, Table};
+
+    const EAST: [f64; 2] = [1.0, 0.0];
+
+    /// What a map of 12 x 6 m at 0.05 m shows on which some pixels are occupied, and all others free.
+    fn on_map<T>(is_occupied: impl Fn(usize, usize) -> bool, heading: [f64; 2], shows: impl Fn(&Map) -> T) -> T {
+        let pixels: Vec<u8> =
+            (0..120).flat_map(|y| (0..240).map(move |x| [x, y])).map(|[x, y]| u8::from(is_occupied(x, y))).collect();
+        let (mut values, mut states) = ([0; 256], [0; 256]);
+        (values[1], states[1]) = (100, 1);
+        let table = Table::new(&values, &states);
+        let grid = Grid::new(&pixels, true, &table, MapFrame::new(240, 120, 0.05, [0.0; 3]));
+        shows(&Map { grid: &grid, heading })
+    }
 
     #[test]
     fn frames_at_one_place_are_one_and_the_rack_of_them_ends() {
         let frame = |at: f64| Frame { at, faces: [0.0, 1.1] };
-        let (_, legs) = frames(&[], [1.0, 0.0]);
+        let (_, legs) = frames(&[], EAST);
         let places = [0.0, 0.0, 0.1, 2.0, 2.0, 4.0, 4.05, 6.0];
         let rows = at_one_pitch(places.map(frame).to_vec(), &legs);
         assert_eq!(rows.len(), 1);
-        let rack = rack(0, &rows[0], &legs, |_, _| false);
+        let rack = on_map(|_, _| false, EAST, |map| rack(0, &rows[0], &legs, map));
         assert_eq!((rack.frames, rack.pitch, rack.row.along), (4, 2.0, [0.0, 6.0]));
     }
 
     #[test]
     fn a_rack_goes_on_to_a_leg_by_itself_but_not_past_a_wall() {
-        let leg = |u: f64| Upright { at: [u, 0.0], spread: [0.0; 3] };
-        let row = [0.0, 2.0, 4.0].map(|at| Frame { at, faces: [0.0, 1.1] });
-        let (_, legs) = frames(&[leg(-2.0), leg(6.0)], [1.0, 0.0]);
-        let along = |wall: f64| rack(0, &row, &legs, |along, _| holds(along, wall)).row.along;
-        assert_eq!([along(9.0), along(5.0), along(-1.0)], [[-2.0, 6.0], [-2.0, 4.0], [0.0, 6.0]]);
+        let leg = |u: f64| Upright::point([u, 3.0]);
+        let row = [4.0, 6.0, 8.0].map(|at| Frame { at, faces: [3.0, 4.1] });
+        let (_, legs) = frames(&[leg(2.0), leg(10.0)], EAST);
+        let along = |wall: usize| on_map(|x, _| x == wall, EAST, |map| rack(0, &row, &legs, map)).row.along;
+        assert_eq!([along(230), along(180), along(60)], [[2.0, 10.0], [2.0, 8.0], [4.0, 10.0]]);
     }
 
     #[test]
     fn a_wall_across_a_row_runs_past_both_its_faces() {
-        use crate::grid::{Frame, Table};
-        // A wall of one pixel at x = 5 from edge to edge, and a rack's end as deep as the row at x = 2: free 0, occupied 1.
-        let mut pixels = vec![0; 100 * 60];
-        (0..60).for_each(|y| pixels[y * 100 + 50] = 1);
-        (20..31).for_each(|y| pixels[y * 100 + 20] = 1);
-        let (mut values, mut states) = ([0; 256], [0; 256]);
-        (values[1], states[1]) = (100, 1);
-        let table = Table::new(&values, &states);
-        let grid = Grid::new(&pixels, true, &table, Frame::new(100, 60, 0.1, [0.0; 3]));
-        let map = Map { grid: &grid, heading: [1.0, 0.0] };
-        let is_walled = |along| map.is_walled(along, [2.0, 3.1]);
+        // A wall of one pixel at 5 m from edge to edge, and a rack's end as deep as the row at 2 m.
+        let is_occupied = |x: usize, y: usize| x == 100 || x == 40 && (40..62).contains(&y);
+        let is_walled = |along| on_map(is_occupied, EAST, |map| map.is_walled(along, [2.0, 3.1]));
         assert_eq!([[0.5, 4.5], [3.0, 5.5], [3.0, 4.95], [6.0, 9.0]].map(is_walled), [false, true, true, false]);
+    }
+
+    #[test]
+    fn a_wall_of_single_pixels_is_one_on_a_map_that_is_turned() {
+        for degrees in [5.0, 20.0, 33.0, 45.0] {
+            let (sin, cos) = libm::sincos(f64::to_radians(degrees));
+            // Through the map's middle; from row to row of pixels no gap is left.
+            let place = |y: f64| 6.0 - (y - 3.0) * sin / cos;
+            let is_occupied = |x: usize, y: usize| {
+                let ends = [y, y + 1].map(|y| place(y as f64 / 20.0) * 20.0);
+                (ends[1].floor()..=ends[0].floor()).contains(&(x as f64))
+            };
+            let [u, v] = [6.0 * cos + 3.0 * sin, 3.0 * cos - 6.0 * sin];
+            let is_walled = |off: f64| {
+                let along = [u + off - 0.4, u + off + 0.4];
+                on_map(is_occupied, [cos, sin], |map| map.is_walled(along, [v - 0.5, v + 0.5]))
+            };
+            assert_eq!([0.0, -1.0, 1.0].map(is_walled), [true, false, false], "{degrees}");
+        }
     }
 }

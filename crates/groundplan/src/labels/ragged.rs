@@ -184,17 +184,25 @@ impl Short {
 
 /// True when two strips share so much of their width that one of them is too much.
 pub fn is_beside(one: &Strip, two: &Strip) -> bool {
-    overlap(one.along, two.along) > 0.0 && overlap(one.across, two.across) > SHARED * one.width().min(two.width())
+    overlap(one.along, two.along) > 0.0 && share_width(one, two)
 }
 
-/// What others at its ends leave of a way, where that is most of it.
+fn share_width(one: &Strip, two: &Strip) -> bool {
+    overlap(one.across, two.across) > SHARED * one.width().min(two.width())
+}
+
+/// What others at its ends, as far as they were found, leave of a way, where that is most of it.
 pub fn clear_of(way: &Strip, others: &[Strip]) -> Option<Strip> {
     let mut along = way.along;
-    for other in others.iter().filter(|other| other.direction == way.direction && is_beside(way, other)) {
-        if other.along[0] <= along[0] {
-            along[0] = along[0].max(other.along[1]);
-        } else if other.along[1] >= along[1] {
-            along[1] = other.along[0];
+    for other in others.iter().filter(|other| other.direction == way.direction && share_width(way, other)) {
+        let found = other.found_along();
+        if overlap(way.along, found) <= 0.0 {
+            continue;
+        }
+        if found[0] <= along[0] {
+            along[0] = along[0].max(found[1]);
+        } else if found[1] >= along[1] {
+            along[1] = found[0];
         } else {
             return None;
         }

@@ -285,8 +285,7 @@ impl Plan {
 
     /// With what its ways leave of others.
     fn with(self, views: &[Turned], others: &[Strip], least: f64, threads: usize) -> Self {
-        let found: Vec<Strip> = self.strips.iter().map(Strip::as_found).collect();
-        let more: Vec<Strip> = others.iter().filter_map(|way| ragged::clear_of(way, &found)).collect();
+        let more: Vec<Strip> = others.iter().filter_map(|way| ragged::clear_of(way, &self.strips)).collect();
         if more.is_empty() {
             return self;
         }

@@ -17,10 +17,16 @@ pub struct Upright {
     /// Its middle in the map frame.
     pub at: [f64; 2],
     /// Variances of its pixels' places, of x, of both and of y, square metres.
-    pub(super) spread: [f64; 3],
+    spread: [f64; 3],
 }
 
 impl Upright {
+    /// At a point.
+    #[cfg(test)]
+    pub fn point(at: [f64; 2]) -> Self {
+        Self { at, spread: [0.0; 3] }
+    }
+
     /// How long it is along and across a heading, metres: as a box of the same spread.
     pub fn extents(&self, [cos, sin]: [f64; 2]) -> [f64; 2] {
         let [xx, xy, yy] = self.spread;

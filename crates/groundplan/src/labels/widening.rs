@@ -20,7 +20,7 @@ pub fn up_to(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Vec<St
             // Along the way, outwards.
             let out = |place: f64| place * sign(side);
             let found = out(way.found[side]);
-            if out(other.as_found().along[1 - side]) < found {
+            if out(other.found_along()[1 - side]) < found {
                 continue;
             }
             let begins = out(other.along[1 - side]).max(found) - SLACK;
