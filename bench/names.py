@@ -7,8 +7,8 @@ of their aisles' or regions' names. No bar, so no exit code.
 
 from __future__ import annotations
 
+import argparse
 import statistics
-import sys
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from typing import Any
@@ -44,8 +44,11 @@ def scored(site: Site) -> tuple[Site, dict[str, Any]]:
 
 def main() -> None:
     """Make the sites and their remakes, score them, print the table."""
-    first, count = (int(sys.argv[n]) if len(sys.argv) > n else default for n, default in ((1, 3000), (2, 4)))
-    sites = [(kind, first + 10 * n + k) for k, kind in enumerate(KINDS) for n in range(count)]
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("first", nargs="?", type=int, default=3000)
+    parser.add_argument("count", nargs="?", type=int, default=4)
+    words = parser.parse_args()
+    sites = [(kind, words.first + 10 * n + k) for k, kind in enumerate(KINDS) for n in range(words.count)]
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
         scores = dict(pool.map(scored, sites))
     print(f"{len(sites)} sites{'mean':>12}{'worst':>8}")

@@ -1,10 +1,16 @@
-"""Make anew what the docs show: the pictures, the README's formats, and the tables of scores. Run by `make docs`."""
+"""Make anew what the docs show: the pictures, the README's formats, and the tables of scores. Run by `make docs`.
+
+docs/make.py [PART ...] makes some of it: pictures, formats, or a table of docs/accuracy.md by its mark's name.
+"""
 
 from __future__ import annotations
 
+import argparse
 import subprocess
 import sys
 import sysconfig
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import groundplan
@@ -15,6 +21,12 @@ from groundplan.roadmap import road_map
 DOCS = Path(__file__).parent
 PROGRAM = Path(sysconfig.get_path("scripts")) / "groundplan"
 SUITES = ("warehouses", "offices", "roadmaps", "names", "confidence")
+#: Tables that a script in bench/ prints, and its words.
+BENCHES = {
+    "plain halls": ("plain.py",),
+    "other sites": ("other_sites.py",),
+    "other hard sites": ("other_sites.py", "0", "66", "--hard"),
+}
 
 
 def pictures() -> None:
@@ -41,26 +53,20 @@ def formats() -> None:
     _between(DOCS.parent / "README.md", "formats", "\n".join([*head, *rows]))
 
 
-def scores() -> None:
-    """The suites' tables into docs/accuracy.md, and those of the sites of another make."""
-    for suite in SUITES:
-        table = subprocess.run(
-            [PROGRAM, "evaluate", "--suite", suite], check=True, stdout=subprocess.PIPE, text=True
-        ).stdout
-        _between(DOCS / "accuracy.md", suite, f"```\n{table}```")
-    benches = (
-        ("plain halls", ["plain.py"]),
-        ("other sites", ["other_sites.py"]),
-        ("other hard sites", ["other_sites.py", "0", "66", "--hard"]),
-    )
-    for name, (bench, *words) in benches:
-        others = subprocess.run(
-            [sys.executable, DOCS.parent / "bench" / bench, *words],
-            check=True,
-            stdout=subprocess.PIPE,
-            text=True,
-        ).stdout
-        _between(DOCS / "accuracy.md", name, f"```\n{others}```")
+def table(name: str) -> None:
+    """A suite's table into docs/accuracy.md, or that of halls and sites of another make."""
+    if name in SUITES:
+        command = [PROGRAM, "evaluate", "--suite", name]
+    else:
+        bench, *words = BENCHES[name]
+        command = [sys.executable, DOCS.parent / "bench" / bench, *words]
+    printed = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+    _between(DOCS / "accuracy.md", name, f"```\n{printed}```")
+
+
+#: What there is to make, in this order.
+PARTS: dict[str, Callable[[], None]] = {"pictures": pictures, "formats": formats}
+PARTS |= {name: partial(table, name) for name in (*SUITES, *BENCHES)}
 
 
 def _between(page: Path, name: str, text: str) -> None:
@@ -71,8 +77,19 @@ def _between(page: Path, name: str, text: str) -> None:
     page.write_text(f"{before}{begin}\n\n{text}\n\n{end}{after}", encoding="utf-8")
 
 
+def main() -> None:
+    """Make the parts that are named, or all."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    names = ", ".join(repr(name) if " " in name else name for name in PARTS)
+    parser.add_argument("parts", nargs="*", metavar="PART", help=f"{names}; all without one")
+    words = parser.parse_args()
+    unknown = [name for name in words.parts if name not in PARTS]
+    if unknown:
+        parser.error(f"there is no part {unknown[0]!r}: there are {names}")
+    for name in words.parts or PARTS:
+        PARTS[name]()
+        sys.stderr.write(f"made {name}\n")
+
+
 if __name__ == "__main__":
-    pictures()
-    formats()
-    scores()
-    sys.stderr.write("wrote docs/survey.png, docs/roads.png, README.md and docs/accuracy.md\n")
+    main()
