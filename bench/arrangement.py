@@ -7,6 +7,7 @@ a face at a million faces, that at most 1.5 times what one of ten thousand costs
 
 from __future__ import annotations
 
+import argparse
 import statistics
 import sys
 import time
@@ -65,6 +66,7 @@ def with_shapely(given: Input) -> int:
 
 def main() -> int:
     """Measure, print the table, hold it to the bars."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
     cost: dict[tuple[int, int], float] = {}
     print("directions  lines each      faces        ms  us a face")
     for directions, counts in COUNTS.items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import tempfile
 import time
 from pathlib import Path
@@ -17,6 +18,7 @@ LINES = 318
 
 def main() -> None:
     """Cut an empty hall by lines a hand's breadth apart, and write it in every format."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
     offsets = np.linspace(0.05, 34.9, LINES)
     directions = Directions(np.array([0.0, -np.pi / 2]), np.ones(2), np.zeros(360), 1.0)
     which = np.repeat(np.array([0, 1], dtype=np.uint32), LINES)

@@ -9,6 +9,7 @@ Ends with exit code 1 when reading takes more than a quarter of a byte of memory
 
 from __future__ import annotations
 
+import argparse
 import sys
 import tempfile
 from collections.abc import Callable
@@ -87,9 +88,11 @@ def measure(path: Path, modules: list[str], *, survey: bool) -> tuple[list[float
 
 def main() -> int:
     """Make the maps, measure, print the table, hold it to the bar."""
-    words = sys.argv[1:]
-    survey = "--survey" in words
-    side = next((int(word) for word in words if word.isdecimal()), SIDE)
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("side", nargs="?", type=int, default=SIDE)
+    parser.add_argument("--survey", action="store_true", help="survey each map too")
+    words = parser.parse_args()
+    survey, side = words.survey, words.side
     if not Path("/proc/self/status").exists():
         print("the memory of a process is only measured on Linux")
         return 0

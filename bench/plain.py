@@ -12,9 +12,9 @@ junctions as they are drawn. No bar, so no exit code.
 
 from __future__ import annotations
 
+import argparse
 import math
 import random
-import sys
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, fields
@@ -188,8 +188,11 @@ def table(plans: Plans, title: str, junctions: set[int], racks: set[int]) -> Non
 
 def main() -> None:
     """Survey all, print the tables."""
-    first, count = (*map(int, sys.argv[1:3]), *(0, 400)[len(sys.argv) - 1 :])
-    seeds = range(first, first + count)
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("first", nargs="?", type=int, default=0)
+    parser.add_argument("count", nargs="?", type=int, default=400)
+    words = parser.parse_args()
+    seeds = range(words.first, words.first + words.count)
     plans = {seed: (hall(seed), planned(hall(seed))) for seed in seeds}
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
         surveyed, hit = (

@@ -7,6 +7,7 @@ when a bar is missed: at most 2 us for ``locate``, at most 5 ms for ``route``.
 
 from __future__ import annotations
 
+import argparse
 import statistics
 import sys
 import time
@@ -58,6 +59,7 @@ def each(task: Callable[..., object], asked: Iterable[tuple[Any, ...]]) -> list[
 
 def main() -> int:
     """Measure, print the table, hold it to the bars."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
     map = hall()
     survey = surveyed(map)
     size = SIDE * RESOLUTION

@@ -4,6 +4,7 @@ Needs ../shared (maps/bormann and tools/evaluate_*.py) beside the repository, an
 does nothing where they are not there. `bench/rooms.py name=value ...` sets parameters.
 """
 
+import argparse
 import json
 import sys
 import time
@@ -15,8 +16,11 @@ SHARED = Path(__file__).resolve().parents[2] / "shared"
 SETS = {"bare": "", "furnished": "_furnitures", "furnished, bins": "_furnitures_trashbins"}
 
 
-def main(settings: list[str]) -> None:
+def main() -> None:
     """Survey every map and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("settings", nargs="*", metavar="name=value")
+    settings = parser.parse_args().settings
     sys.path.insert(0, str(SHARED / "tools"))
     try:
         import cv2
@@ -53,4 +57,4 @@ def main(settings: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

@@ -10,6 +10,7 @@ least. With NAMEs only those maps. Needs shapely and scipy. No bar, so no exit c
 
 from __future__ import annotations
 
+import argparse
 import os
 import statistics
 import sys
@@ -128,11 +129,14 @@ def share(of: list[tuple[int, int, int]]) -> float:
 
 def main() -> None:
     """Survey all, print the tables."""
-    chosen = cases(sys.argv[1:])
-    unknown = set(sys.argv[1:]) - {name for name, _ in chosen}
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    names = parser.parse_args().names
+    chosen = cases(names)
+    unknown = set(names) - {name for name, _ in chosen}
     if unknown:
-        names = "those of files without .yaml, 'other 9000', 'harder 9000'"
-        sys.exit(f"no map is named {', '.join(sorted(unknown))}: names are {names}")
+        such = "those of files without .yaml, 'other 9000', 'harder 9000'"
+        sys.exit(f"no map is named {', '.join(sorted(unknown))}: names are {such}")
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
         maps = {name: found for name, found in pool.map(kept, chosen) if found}
     print(f"{len(maps)} maps   found again   worst  all kept  counts" + "".join(f"{kind:>10}" for kind in KINDS))

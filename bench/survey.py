@@ -2,11 +2,12 @@
 
 Medians; what a ratio is made of is measured in turns in one run. On Bormann et al.'s maps (../shared/maps/bormann; the
 mean over them) and on the example's warehouse laid side by side to 4000 x 4000 pixels; then a survey from the shell.
-Ends with exit code 1 when a bar is missed. Needs OpenCV. ``bench/survey.py N`` measures N runs (default 5).
+Ends with exit code 1 when a bar is missed. Needs OpenCV. ``bench/survey.py RUNS`` measures so many (default 5).
 """
 
 from __future__ import annotations
 
+import argparse
 import os
 import platform
 import statistics
@@ -110,8 +111,11 @@ def shell(folder: Path, runs: int) -> dict[str, float]:
     return {name: spent / 1e3 for name, spent in medians(tasks, runs).items()}
 
 
-def main(runs: int) -> int:
+def main() -> int:
     """Measure, print the tables, hold them to the bars."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("runs", nargs="?", type=int, default=5)
+    runs = parser.parse_args().runs
     try:
         import cv2
     except ImportError as error:
@@ -155,4 +159,4 @@ def main(runs: int) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 5))
+    sys.exit(main())

@@ -9,9 +9,9 @@ row, every measure within 15 percent of theirs. A site that has no room for its 
 
 from __future__ import annotations
 
+import argparse
 import random
 import statistics
-import sys
 import tomllib
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
@@ -120,7 +120,9 @@ def scores(options: Options) -> list[float] | None:
 
 def main() -> None:
     """Make the sites, score them, print the table."""
-    sets = int(sys.argv[1]) if len(sys.argv) > 1 else 1
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("sets", nargs="?", type=int, default=1)
+    sets = parser.parse_args().sets
     print(f"{'sites':15}{'count':>6}{'F1':>8}{'typed':>8}{'worst':>8}{'recall':>8}{'precision':>11}")
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
         for number in range(sets):

@@ -10,6 +10,7 @@ Ends with exit code 1 when bytes differ, or when an update costs more than a twe
 
 from __future__ import annotations
 
+import argparse
 import os
 import platform
 import statistics
@@ -81,7 +82,9 @@ def on_four_workers(map: Map) -> tuple[float, float, bool]:
 
 def main() -> int:
     """Measure, print, hold to the bar."""
-    side = int(sys.argv[1]) if len(sys.argv) > 1 else SIDE
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("side", nargs="?", type=int, default=SIDE)
+    side = parser.parse_args().side
     map, missed = laid_out(side), False
     print(f"{platform.machine()}, {os.cpu_count()} cores; {side} x {side} pixels, {PATCH} x {PATCH} of them changed")
     print(f"{'labels':10}{'threads':>8}{'update s':>10}{'survey s':>10}{'ratio':>8}  bar <= {BAR:g}")

@@ -6,6 +6,7 @@ or more of that, as over a door; and the share of the edge pixels that a wall li
 
 from __future__ import annotations
 
+import argparse
 import os
 import sys
 from pathlib import Path
@@ -58,6 +59,7 @@ def measured(map: Map) -> npt.NDArray[np.float64]:
 
 def main() -> None:
     """Add up all maps."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
     total, maps, crossed = np.zeros(5), 0, 0
     for path in sorted((SHARED / "maps").rglob("*.yaml")):
         try:

@@ -8,11 +8,11 @@ the report are printed where LibreCAD and poppler are installed. Names given on 
 
 from __future__ import annotations
 
+import argparse
 import difflib
 import os
 import shutil
 import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -30,8 +30,11 @@ SIMULATED = "simulated"
 EXPORTED = (SIMULATED, "radish_intel_jones_farms", "nav2_warehouse")
 
 
-def main(chosen: list[str]) -> None:
+def main() -> None:
     """Draw the chosen maps, or all."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    chosen = parser.parse_args().names
     for name, map in maps(chosen):
         survey = groundplan.survey(map)
         draw_survey(survey, map, GALLERY / f"{name}.png")
@@ -91,4 +94,4 @@ def export(survey: groundplan.Survey, map: groundplan.Map, out: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

@@ -9,6 +9,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
+SCRIPTS = sorted(
+    path.relative_to(ROOT).as_posix() for place in ("bench", "docs") for path in ROOT.glob(f"{place}/[!_]*.py")
+)
 
 
 def run(script: str, *words: str) -> subprocess.CompletedProcess[str]:
@@ -16,7 +19,7 @@ def run(script: str, *words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
 
 
-@pytest.mark.parametrize("script", ["bench/names.py", "docs/make.py"])
+@pytest.mark.parametrize("script", SCRIPTS)
 def test_a_script_answers_help_and_does_nothing_else(script: str) -> None:
     ran = run(script, "--help")
     assert (ran.returncode, ran.stderr) == (0, "")
