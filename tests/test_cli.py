@@ -52,6 +52,14 @@ def test_version_is_the_package_s(capsys: Capture) -> None:
     assert (ran.code, ran.out) == (0, f"groundplan {groundplan.__version__}\n")
 
 
+def test_python_runs_the_program_as_a_module() -> None:
+    for words in (["--version"], ["--help"], ["surve"]):
+        command = [sys.executable, "-m", "groundplan", *words]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        own = start(*words)
+        assert (done.returncode, done.stdout, done.stderr) == (own.code, own.out, own.err)
+
+
 def test_no_command_shows_the_help_and_is_wrong_usage(capsys: Capture) -> None:
     ran = call(capsys)
     assert ran.code == 2 and ran.out == "" and "groundplan survey" in ran.err
