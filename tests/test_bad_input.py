@@ -115,6 +115,35 @@ def test_a_slip_of_the_pen_in_a_map_s_name_is_put_right(tmp_path: Path, capsys: 
     assert call(capsys, "survey", "maps/hall.yaml").err.endswith("hint: there is no directory maps\n")
 
 
+@pytest.mark.parametrize(
+    ("image", "picture", "hint"),
+    [
+        ("attic.pgm", None, "copy attic.pgm into {place}, beside attic.yaml, or correct image: in it"),
+        ("/there/attic.pgm", None, "copy attic.pgm into {place}, beside attic.yaml, or correct image: in it"),
+        ("C:\\there\\attic.pgm", None, "copy attic.pgm into {place}, beside attic.yaml, or correct image: in it"),
+        ("atic.pgm", "attic.pgm", "did you mean image: attic.pgm in attic.yaml?"),
+        ("map.pgm", "map.tiff", "did you mean image: map.tiff in attic.yaml?"),
+        ("map.pgm", "attic.png", "did you mean image: attic.png in attic.yaml?"),
+        ("maps/map.pgm", "maps/map.png", "did you mean image: maps/map.png in attic.yaml?"),
+        ("../map.pgm", "../map.png", "did you mean image: ../map.png in attic.yaml?"),
+        ("maps/map.pgm", "attic.pgm", "did you mean image: attic.pgm in attic.yaml?"),
+    ],
+)
+def test_a_yaml_whose_picture_is_not_there_names_both_and_what_it_may_have_been(
+    image: str, picture: str | None, hint: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = tmp_path / "site"
+    place.mkdir()
+    monkeypatch.chdir(place)
+    (place / "attic.yaml").write_text(f"image: {image}\nresolution: 0.05\norigin: [0, 0, 0]\n")
+    if picture is not None:
+        (place / picture).parent.mkdir(exist_ok=True)
+        write_pgm(place / picture, hall())
+    ran = call(capsys, "survey", "attic.yaml")
+    said = f"error: attic.yaml names the image {image}, which does not exist\n"
+    assert (ran.code, ran.err) == (3, f"{said}hint: {hint.format(place=place)}\n")
+
+
 NOTHING: dict[str, tuple[npt.NDArray[np.uint8], str]] = {
     "1x1": (hall()[:1, :1], "map.png is a single pixel: there is nothing to survey"),
     "all unknown": (np.full_like(hall(), 205), "map.png: no pixel of the map is free: there is nothing to survey"),

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import cast
 
 from groundplan._errors import MapError
-from groundplan._files import absent, nearest
 from groundplan.maps._dialects import FREE_THRESH, MODES, OCCUPIED_THRESH, Mode
 from groundplan.maps._map import MapWarning
 from groundplan.maps._open import open_file
@@ -21,6 +20,9 @@ from groundplan.maps._source import Described, Origin
 
 #: A YAML of a map has a few hundred bytes; what is larger is something else.
 LARGEST_YAML = 1 << 20
+
+#: What the names of pictures end in.
+PICTURES = (".pgm", ".png", ".bmp", ".tif", ".tiff", ".jpg", ".jpeg", ".pbm", ".ppm")
 
 #: The keys that map_server reads.
 KEYS = ("image", "resolution", "origin", "negate", "mode", "occupied_thresh", "free_thresh")
@@ -194,7 +196,25 @@ def _image(path: Path, fields: dict[str, object]) -> tuple[Path, list[MapWarning
             return beside, [MapWarning("image-beside", said)]
     except OSError:
         return image, []  # no permission, or a name too long: opening it says so
-    raise MapError("map.missing", f"{path} names the image {name}, and {absent(image)}", nearest(image))
+    said = f"{path} names the image {name}, which does not exist"
+    near = _near(path, image.parent, beside.stem)
+    hint = f"copy {beside.name} into {path.parent.absolute()}, beside {path.name}, or correct image: in it"
+    raise MapError("map.missing", said, f"did you mean image: {near} in {path.name}?" if near else hint)
+
+
+def _near(path: Path, place: Path, stem: str) -> str | None:
+    """The picture that an image which is not there may have been meant to be: by its name, or by the YAML's."""
+    for folder in dict.fromkeys((place, path.parent)):
+        try:
+            names = sorted(entry.name for entry in folder.iterdir() if entry.suffix.lower() in PICTURES)
+        except OSError:
+            continue
+        stems = {Path(name).stem: name for name in names}
+        for wanted in (stem, path.stem):
+            if like := get_close_matches(wanted, stems, 1):
+                near = folder / stems[like[0]]
+                return (near.relative_to(path.parent) if near.is_relative_to(path.parent) else near).as_posix()
+    return None
 
 
 def check_negate(path: Path, value: object) -> bool:
