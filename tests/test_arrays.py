@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -50,6 +51,22 @@ def test_arrays_that_are_no_maps(array: Pixels) -> None:
     with pytest.raises(MapError) as caught:
         from_array(array, 0.05)
     assert caught.value.code == "map.pixels"
+
+
+@pytest.mark.parametrize(
+    ("value", "said", "hint"),
+    [
+        (hall(), f"an array of shape {hall().shape} is no file's path", "groundplan.from_array(array, resolution)"),
+        (hall().tolist(), "[[", "groundplan.from_array(array, resolution)"),
+        (from_array(hall(), 0.05), " pixels of 0.05 m) is a Map already", "groundplan.survey takes it"),
+        (None, "None is no file's path", "a path is text or a pathlib.Path"),
+        (b"hall.yaml", "b'hall.yaml' is no file's path", "a path is text or a pathlib.Path"),
+    ],
+)
+def test_what_is_no_path_is_not_read_and_the_hint_says_what_takes_it(value: Any, said: str, hint: str) -> None:
+    with pytest.raises(MapError, match=re.escape(said)) as caught:
+        groundplan.read(value)
+    assert caught.value.code == "map.input" and hint in str(caught.value.hint) and "\n" not in str(caught.value)
 
 
 def test_masked_pixels_are_refused_and_a_mask_of_none_is_not() -> None:

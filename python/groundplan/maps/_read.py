@@ -19,7 +19,7 @@ from groundplan.maps._source import Described, Occupancies, Picture, Progress, S
 from groundplan.maps._tally import Tally
 from groundplan.maps._warnings import rounded
 from groundplan.maps.image import read_image
-from groundplan.maps.map_server import check_origin, check_resolution, meant, read_yaml
+from groundplan.maps.map_server import check_origin, check_resolution, meant, read_yaml, shown
 
 #: What each kind of file is called, and what can be given for it alone.
 _CALLED: dict[Kind, str] = {
@@ -99,6 +99,7 @@ def read(
     ------
     MapError
         The file is missing, unreadable, not a map, or says what cannot be; the message names file and value.
+        ``map.input`` for what is no path, such as an array: that is for `from_array`.
     GroundplanError
         ``extra.missing`` where the library for such files is not installed.
     """
@@ -118,6 +119,8 @@ def read_or_leave(
 
     Such a map has the right shape and stands for the file that comes with it, as does what was counted.
     """
+    if not isinstance(path, str | os.PathLike):
+        raise _no_path(path)
     resolution, origin, dialect = given.get("resolution"), given.get("origin"), given.get("dialect", "nav2")
     place = Path(path).expanduser() if str(path).startswith("~") else Path(path)
     kind = kind_of(place)
@@ -243,6 +246,18 @@ def from_array(
             _SHARES if array.dtype.kind == "f" else "convert an OccupancyGrid's data with .astype('int8')",
         )
     return Map(pixels, values, states, metres, pose, image, tuple(warnings + odd))
+
+
+def _no_path(value: object) -> MapError:
+    """The error for what is read and is no file's path."""
+    if isinstance(value, Map):
+        return MapError("map.input", f"{value} is a Map already, and no file's path", "groundplan.survey takes it")
+    hint = "a path is text or a pathlib.Path"
+    if hasattr(value, "__array__") or isinstance(value, list | tuple):
+        hint = "groundplan.from_array(array, resolution) makes a Map of an array"
+    shape = getattr(value, "shape", None)
+    said = shown(value) if shape is None else f"an array of shape {shape}"
+    return MapError("map.input", f"{said} is no file's path", hint)
 
 
 def masked(array: object) -> int:
