@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -94,6 +96,53 @@ def test_the_hint_for_shares_of_one_makes_a_map() -> None:
 @pytest.mark.parametrize("origin", [[1.0, 2.0], (1, 2, 0.0), np.array([1.0, 2.0, 0.0])])
 def test_an_origin_is_a_list_a_tuple_or_an_array(origin: Any) -> None:
     assert groundplan.survey(hall(), resolution=0.05, origin=origin).map.origin == (1.0, 2.0, 0.0)
+
+
+NAN, INF = float("nan"), float("inf")
+
+
+@pytest.mark.parametrize(
+    ("frame", "said"),
+    [
+        ({"origin": (NAN, 0.0, 0.0)}, "origin (nan, 0.0, 0.0) is not a place"),
+        ({"origin": (0.0, -INF, 0.0)}, "origin (0.0, -inf, 0.0) is not a place"),
+        ({"origin": (0.0, 0.0, INF)}, "origin has the yaw inf, which is no angle"),
+        ({"origin": None}, "origin None is not 2 or 3 numbers"),
+        ({"resolution": NAN}, "resolution nan is not a number of metres a pixel"),
+        ({"resolution": INF}, "resolution inf is not"),
+        ({"resolution": 0}, "resolution 0 is not"),
+        ({"resolution": -0.05}, "resolution -0.05 is not"),
+        ({"resolution": "fine"}, "resolution 'fine' is not"),
+    ],
+)
+def test_a_map_made_by_hand_has_a_frame_that_can_be(frame: dict[str, Any], said: str) -> None:
+    made = from_array(hall(), 0.05)
+    whole: dict[str, Any] = {"resolution": 0.05} | frame
+    doors: list[Callable[[], groundplan.Map]] = [
+        lambda: groundplan.Map(made.pixels, made.values, made.states, **whole),
+        lambda: dataclasses.replace(made, **frame),
+        lambda: from_array(hall(), **whole),
+    ]
+    for make in doors:
+        with pytest.raises(MapError) as caught:
+            make()
+        assert str(caught.value).startswith(said) and caught.value.code == f"map.{next(iter(frame))}"
+
+
+def test_a_map_made_by_hand_is_the_one_made_of_an_array() -> None:
+    made = from_array(hall(), 0.05, (1.0, 2.0, NAN))
+    by_hand = groundplan.Map(made.pixels, made.values, made.states, np.float32(0.05), [1, 2, NAN])  # type: ignore[arg-type]
+    assert by_hand == made and by_hand.origin == (1.0, 2.0, 0.0)
+    assert [warning.message for warning in by_hand.warnings] == ["the yaw of the origin is nan: read as 0"]
+    assert dataclasses.replace(by_hand, image="hall").warnings == by_hand.warnings
+
+
+def test_a_map_of_other_arrays_is_told_as_a_stage_tells_it() -> None:
+    made = from_array(hall(), 0.05)
+    wrong: list[dict[str, Any]] = [{"pixels": made.pixels * 1.0}, {"values": None}]
+    for arrays in wrong:
+        with pytest.raises(groundplan.ParameterError, match="an array is not of the type that its stage says"):
+            groundplan.survey(dataclasses.replace(made, **arrays))
 
 
 @pytest.mark.parametrize("origin", [3, 3.5, "12", (1, 2, 3, 4), np.zeros((1, 3))])

@@ -140,7 +140,7 @@ def surveyed(
         edges = parts.get("gradients") or run(_core.find_gradients, grid, values, cores(threads))
         directions = run(_core.find_directions, grid, edges, values, cores(threads))
         parts = parts | {"gradients": edges, "directions": directions}
-    if _core.is_large(grid):
+    if run(_core.is_large, grid):
         give_back()
     found = run(_core.survey, grid, values, cores(threads), own | parts, keep)
     stages = {

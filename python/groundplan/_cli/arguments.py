@@ -168,9 +168,9 @@ def metres_per_pixel(text: str) -> float:
     from groundplan.maps.map_server import check_resolution
 
     try:
-        return check_resolution(text, "")
+        return check_resolution(text)
     except MapError as fault:
-        raise argparse.ArgumentTypeError(str(fault).removeprefix(": ")) from None
+        raise argparse.ArgumentTypeError(str(fault)) from None
 
 
 def greys(text: str) -> str | list[int]:

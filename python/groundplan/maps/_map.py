@@ -41,6 +41,11 @@ class Map:
         Name of the image, for the survey; never a directory.
     warnings : tuple of MapWarning
         What was odd about the file and what was done about it.
+
+    Raises
+    ------
+    MapError
+        ``map.resolution`` and ``map.origin`` for what `groundplan.from_array` does not take either.
     """
 
     pixels: npt.NDArray[np.uint8]
@@ -50,6 +55,15 @@ class Map:
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     image: str = ""
     warnings: tuple[MapWarning, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        """Hold the frame to what a file may say; what is made by hand comes through no other door."""
+        from groundplan.maps.map_server import check_origin, check_resolution
+
+        origin, odd = check_origin(self.origin)
+        object.__setattr__(self, "resolution", check_resolution(self.resolution))
+        object.__setattr__(self, "origin", origin)
+        object.__setattr__(self, "warnings", (*self.warnings, *odd))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Map):

@@ -126,7 +126,7 @@ def read_or_leave(
     kind = kind_of(place)
     own = {name: given.get(name) for name in _ONLY}
     _refuse(place, _CALLED[kind], [name for name, value in own.items() if value is not None and _ONLY[name] != kind])
-    metres = None if resolution is None else check_resolution(resolution, "resolution")
+    metres = None if resolution is None else check_resolution(resolution)
     luma = dialect == "nav2"
     described, content, far = _opened(place, kind, given, metres, luma=luma, leave=count is not None, progress=progress)
     warnings = list(described.warnings)
@@ -137,7 +137,7 @@ def read_or_leave(
         raise MapError("map.resolution", f"{where} states no resolution", hint)
     pose = described.origin
     if origin is not None:
-        pose, odd = check_origin(origin, "origin")
+        pose, odd = check_origin(origin)
         warnings = [warning for warning in warnings if warning.code != "yaw-nan"] + odd
     if pose is None:
         if kind == "yaml":
@@ -229,8 +229,8 @@ def from_array(
     array = np.asarray(array)
     if array.ndim != 2 or array.size == 0:
         raise MapError("map.pixels", f"an array of shape {array.shape} is not a map; it needs height x width pixels")
-    metres = check_resolution(resolution, "resolution")
-    pose, warnings = check_origin(origin, "origin")
+    metres = check_resolution(resolution)
+    pose, warnings = check_origin(origin)
     nothing = Described(Path(image), metres, pose)
     meaning, stated = meaning_of(nothing, dialect, negate, mode, occupied_thresh, free_thresh, "from_array")
     if array.dtype == np.uint8:

@@ -64,38 +64,45 @@ def read_yaml(path: Path) -> Described:
     return Described(image, resolution, origin, negate, mode, occupied, free, tuple(warnings), misspelled=misspelled)
 
 
-def check_resolution(value: object, where: str) -> float:
-    """Metres a pixel, or ``map.resolution``."""
+def check_resolution(value: object, where: str = "") -> float:
+    """Metres a pixel, or ``map.resolution``. `where` is the file or topic that says it; none where the caller does."""
     metres = number(value)
     if metres is None or not SMALLEST_RESOLUTION <= metres <= LARGEST_RESOLUTION:
         raise MapError(
             "map.resolution",
-            f"{where}: resolution {shown(value)} is not a number of metres a pixel between "
+            f"{_in(where)}resolution {shown(value)} is not a number of metres a pixel between "
             f"{SMALLEST_RESOLUTION:g} and {LARGEST_RESOLUTION:g}",
-            "--resolution sets it, such as --resolution 0.05" if where != "resolution" else None,
+            "--resolution sets it, such as --resolution 0.05" if where else None,
         )
     return metres
 
 
-def check_origin(value: object, where: str, *, exactly: int | None = None) -> tuple[Origin, list[MapWarning]]:
+def check_origin(value: object, where: str = "", *, exactly: int | None = None) -> tuple[Origin, list[MapWarning]]:
     """Pose of the lower left corner, or ``map.origin``; a yaw that is not a number is 0, with a warning."""
     length = f"{exactly} numbers" if exactly else "2 or 3 numbers"
     parts = list(value) if isinstance(value, Sequence) and not isinstance(value, str | bytes) else None
     if hasattr(value, "tolist"):
         parts = cast("list[object]", value.tolist())
     if not isinstance(parts, list) or len(parts) not in ((exactly,) if exactly else (2, 3)):
-        raise MapError("map.origin", f"{where}: origin {shown(value)} is not {length}: x, y, yaw")
+        raise MapError("map.origin", f"{_in(where)}origin {shown(value)} is not {length}: x, y, yaw")
     x, y, yaw = (number(part) for part in [*parts, 0.0][:3])
     if x is None or y is None or not (abs(x) <= FARTHEST_ORIGIN and abs(y) <= FARTHEST_ORIGIN):
         raise MapError(
             "map.origin",
-            f"{where}: origin {shown(value)} is not a place: x and y are metres within {FARTHEST_ORIGIN:g} of 0",
+            f"{_in(where)}origin {shown(value)} is not a place: x and y are metres within {FARTHEST_ORIGIN:g} of 0",
         )
     if yaw is None or abs(yaw) > FARTHEST_ORIGIN:
-        raise MapError("map.origin", f"{where}: origin has the yaw {shown(parts[-1])}, which is no angle in radians")
+        said = f"{_in(where)}origin has the yaw {shown(parts[-1])}, which is no angle in radians"
+        raise MapError("map.origin", said)
     if math.isnan(yaw):
-        return (x, y, 0.0), [MapWarning("yaw-nan", f"the yaw of the origin in {Path(where).name} is nan: read as 0")]
+        said = f"the yaw of the origin{f' in {Path(where).name}' if where else ''} is nan: read as 0"
+        return (x, y, 0.0), [MapWarning("yaw-nan", said)]
     return (x, y, yaw), []
+
+
+def _in(where: str) -> str:
+    """How a sentence about a file's or topic's value begins."""
+    return f"{where}: " if where else ""
 
 
 def check_threshold(value: object, name: str, where: str) -> float:
