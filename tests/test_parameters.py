@@ -90,6 +90,15 @@ def test_a_fault_in_the_file_names_the_file_and_the_nearest_parameter(tmp_path: 
     assert ran.err == "error: settings.toml: there is no parameter lines.snrr\nhint: did you mean lines.snr?\n"
 
 
+def test_a_setting_that_is_a_flag_s_is_told_the_flag(tmp_path: Path, capsys: Capture) -> None:
+    (tmp_path / "settings.toml").write_text("resolution = 0.1\n")
+    ran = call(capsys, "survey", "hall.yaml", "--config", "settings.toml")
+    said = "there is no parameter resolution\nhint: did you mean the flag --resolution?\n"
+    assert (ran.code, ran.err) == (2, f"error: settings.toml: {said}")
+    ran = call(capsys, "survey", "hall.yaml", "--set", "lines.snr=4", "--set", "resolution=0.1", "--set", "origin=0,0")
+    assert (ran.code, ran.err) == (2, f"error: {said}")
+
+
 @pytest.mark.parametrize(
     ("text", "value"),
     [

@@ -64,6 +64,11 @@ class Parser(argparse.ArgumentParser):
         terminal.say("hint", hint or f"{self.prog} --help")
         self.exit(2)
 
+    def flag_of(self, name: str) -> str | None:
+        """The flag of a name, whatever stands between its words; None where there is none."""
+        flag = "--" + name.replace(".", "-").replace("_", "-")
+        return flag if flag in self._option_string_actions else None
+
     def _refuse_command(self, word: str) -> NoReturn:
         near = nearest(word, COMMANDS)
         hint = f"did you mean {self.prog} {near}?" if near else None

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundplan._cli import terminal
-from groundplan._cli.arguments import add_reading, count, number, numbers, place, reading
+from groundplan._cli.arguments import Parser, add_reading, count, number, numbers, place, reading
 from groundplan._cli.export import formats
 
 if TYPE_CHECKING:
@@ -131,17 +131,29 @@ def _detail(text: str) -> Any:
 
 def settings(arguments: argparse.Namespace) -> dict[str, Any]:
     """Default < file < flag, held to the table before any map is read."""
-    from groundplan._errors import ParameterError
-    from groundplan.parameters import named, read_toml, resolve
+    from groundplan.parameters import named, read_toml
 
     own = named(read_toml(arguments.config)) if arguments.config else {}
+    _hold(own, arguments.parser, f"{arguments.config}: ")
+    own |= arguments.settings or {}
+    _hold(own, arguments.parser)
+    return own
+
+
+def _hold(own: dict[str, Any], parser: Parser, where: str = "") -> None:
+    """Hold settings to the table; of a name that a flag has and no parameter, the hint is the flag."""
+    from groundplan._errors import ParameterError
+    from groundplan.parameters import resolve
+
     try:
         resolve(own)
     except ParameterError as fault:
-        raise ParameterError(fault.code, f"{arguments.config}: {fault}", fault.hint) from fault
-    own |= arguments.settings or {}
-    resolve(own)
-    return own
+        hint = fault.hint
+        if fault.code == "parameter.unknown":
+            known = resolve({})
+            flag = parser.flag_of(next(name for name in own if name not in known))
+            hint = f"did you mean the flag {flag}?" if flag else hint
+        raise ParameterError(fault.code, f"{where}{fault}", hint) from fault
 
 
 def run(arguments: argparse.Namespace) -> None:
