@@ -212,7 +212,9 @@ def told_blocked(survey: Survey, forms: list[Format], given: dict[str, Any]) -> 
     if roads.blocked:
         named = [f"{piece.id} at ({piece.at[0]:.2f}, {piece.at[1]:.2f})" for piece in roads.blocked[:NAMED]]
         more = [f"{len(roads.blocked) - NAMED} more"] if len(roads.blocked) > NAMED else []
-        yield f"lanes are left out where something stands in the way: {', '.join(named + more)}"
+        out, stay = len(roads.blocked), sum(lane.kind == "aisle" for lane in roads.lanes)
+        said = "1 lane of an aisle is" if out == 1 else f"{out} lanes of aisles are"
+        yield f"{said} left out where something stands in the way, {stay} stay: {', '.join(named + more)}"
 
 
 def _is_of_places(form: Format, given: dict[str, Any]) -> bool:
