@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +48,20 @@ def test_every_format_says_who_reads_it_and_takes_options_that_there_are(name: s
         and set(form.options) <= set(OPTIONS)
     )
     assert (form.extra is None) == (not form.needs) and form.map in ("no", "may", "must")
+
+
+def test_every_extra_that_is_named_installs_what_is_needed() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    holds = {
+        extra: {re.split(r"[^\w-]", line)[0] for line in lines}
+        for extra, lines in project["optional-dependencies"].items()
+    }
+    calls = re.compile(r'needed\(f?"(\w+)[^"]*", "(\w+)"\)')
+    sources = (ROOT / "python").rglob("*.py")
+    named = {(library, extra) for path in sources for library, extra in calls.findall(path.read_text("utf-8"))}
+    assert {library for library, _ in named} >= {"cyclonedds", "distributed", "pye57", "rasterio", "zarr"}
+    named |= {(library, form.extra or "") for form in FORMATS.values() for library in form.needs}
+    assert all(library in holds.get(extra, ()) for library, extra in named), named
 
 
 def test_the_readme_has_a_row_for_every_format() -> None:
@@ -244,6 +260,19 @@ def test_the_program_lists_every_format(capsys: pytest.CaptureFixture[str]) -> N
     assert ran.code == 0
     for form in FORMATS.values():
         assert f"\n{form.name} " in f"\n{ran.out}" and form.readers in ran.out
+    assert "pip install" not in ran.out and "needs the extra fleet, installed" in ran.out
+
+
+def test_the_list_names_what_is_not_installed_and_the_command_that_installs_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for library in ("shapely", "pyproj"):
+        monkeypatch.setitem(sys.modules, library, None)
+    ran = call(capsys, "export", "--list")
+    needs = [line.strip() for line in ran.out.splitlines() if line.strip().startswith("needs ")]
+    assert len(needs) == sum(bool(form.needs) for form in FORMATS.values())
+    assert "needs shapely, not installed: pip install 'groundplan[fleet]'" in needs
+    assert "needs shapely, pyproj, not installed: pip install 'groundplan[gis]'" in needs
 
 
 @pytest.mark.parametrize(

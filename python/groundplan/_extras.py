@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import importlib
+import importlib.util
+from collections.abc import Iterable
 from typing import Any
 
 from groundplan._errors import GroundplanError
@@ -20,4 +21,14 @@ def needed(module: str, extra: str) -> Any:
         return importlib.import_module(module)
     except ImportError as fault:
         said = f"{module.partition('.')[0]} is not installed"
-        raise GroundplanError("extra.missing", said, f"pip install 'groundplan[{extra}]'") from fault
+        raise GroundplanError("extra.missing", said, installs(extra)) from fault
+
+
+def missing(modules: Iterable[str]) -> list[str]:
+    """Which of some modules are not installed; none of them is imported."""
+    return [module for module in modules if importlib.util.find_spec(module) is None]
+
+
+def installs(extra: str) -> str:
+    """The command that installs an extra."""
+    return f"pip install 'groundplan[{extra}]'"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from groundplan._cli import terminal
 from groundplan._cli.arguments import add_reading, number, reading
+from groundplan._extras import installs, missing
 from groundplan.export import FORMATS, OPTIONS, Format, Option, format_named
 
 if TYPE_CHECKING:
@@ -255,5 +256,9 @@ def listed() -> str:
         told = [f"--{name.replace('_', '-')}" for name in form.options] + ["--map"] * (form.map != "no")
         rows.append(("", f"NAME{form.suffix}{'; takes ' if told else ''}{', '.join(told)}"))
         if form.extra:
-            rows.append(("", f"needs pip install 'groundplan[{form.extra}]'"))
+            lacking = ", ".join(missing(form.needs))
+            said = (
+                f"{lacking}, not installed: {installs(form.extra)}" if lacking else f"the extra {form.extra}, installed"
+            )
+            rows.append(("", f"needs {said}"))
     return "\n".join(terminal.columns(rows)) + "\n"

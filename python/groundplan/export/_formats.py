@@ -165,7 +165,7 @@ FORMATS: dict[str, Format] = {
             "a grammar of OGC 19-011r4, networkx",
             options=("graph",),
             needs=("shapely",),
-            extra="gis",
+            extra="fleet",
         ),
         Format(
             "json",
