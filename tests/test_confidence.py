@@ -38,6 +38,40 @@ def test_a_survey_says_so_where_the_evidence_does_not_decide() -> None:
         assert all(f" {unsure} of {len(survey.labels)} labels" in message for message in told)
 
 
+def hall(aisle: float, head: float, wall: float) -> zoo.Picture:
+    """A hall of six rows of a metre at 0.05 m, its walls so thick, with floor outside; aisles and head aisles so wide."""
+    depth = 6.0 + 7.0 * aisle
+    plan = zoo.Canvas(1000, round((depth + 2.0 * wall + 14.0) / 0.05), zoo.FREE)
+
+    def box(x: float, y: float, right: float, top: float, value: int) -> None:
+        plan.box(*(round(place / 0.05) for place in (x, y, right, top)), value)
+
+    box(7.0 - wall, 7.0 - wall, 43.0 + wall, 7.0 + depth + wall, zoo.OCCUPIED)
+    box(7.0, 7.0, 43.0, 7.0 + depth, zoo.FREE)
+    for row in range(6):
+        low = 7.0 + aisle + row * (1.0 + aisle)
+        box(7.0 + head, low, 43.0 - head, low + 1.0, zoo.OCCUPIED)
+    return plan.picture
+
+
+@pytest.mark.parametrize(
+    ("aisle", "head", "wall"),
+    [
+        (1.1, 2.0, 0.3),
+        (1.5, 5.0, 0.3),
+        (2.0, 3.0, 0.3),
+        (3.0, 3.0, 0.05),
+        (3.0, 4.0, 0.1),
+        (2.5, 2.5, 0.15),
+        (3.0, 3.0, 0.2),
+    ],
+)
+def test_junctions_are_sure_in_narrow_aisles_and_before_thin_walls(aisle: float, head: float, wall: float) -> None:
+    junctions = groundplan.survey(hall(aisle, head, wall), resolution=0.05).of_kind("junction")
+    assert sorted(label["type"] for label in junctions) == ["L"] * 4 + ["T"] * 10
+    assert min(label["confidence"] for label in junctions) > 0.9
+
+
 def test_the_table_counts_each_label_in_the_bin_of_its_confidence() -> None:
     rows = _reliability.table([("door", 0.2, False), ("door", 0.25, True), ("door", 1.0, True), ("rack", 0.6, True)])
     assert [row["labels"] for row in rows["door"]] == [2, 0, 0, 0, 1]

@@ -122,6 +122,22 @@ fn key(labels: &[Label], label: &Label) -> Key {
     }
 }
 
+/// A way out of a junction: where that lies, whereto it leads, across what width, and how far out it begins, metres.
+struct Out {
+    at: [f64; 2],
+    way: [f64; 2],
+    across: [f64; 2],
+    width: f64,
+    from: f64,
+}
+
+impl Out {
+    /// The place so far out in its middle.
+    fn place(&self, t: f64) -> [f64; 2] {
+        [0, 1].map(|n| self.at[n] + t * self.way[n])
+    }
+}
+
 impl Looks<'_> {
     /// Free along its middle, and structure along both sides: of an empty rack posts are enough, as long as they come
     /// again and again.
@@ -148,16 +164,15 @@ impl Looks<'_> {
     /// True when something that is not free lies about a way's side.
     fn is_bounded(&self, at: [f64; 2], across: [f64; 2], side: f64, half: f64) -> bool {
         let reach = SIDE.map(|off| half + off);
-        // Each pixel on the way, as a wall may be one thick; of fine maps walls are more.
-        let step = self.resolution().clamp(STEP / 8.0, STEP / 2.0);
-        let steps = ((reach[1] - reach[0]) / step).ceil() as usize;
+        let steps = ((reach[1] - reach[0]) / self.step_through_walls()).ceil() as usize;
         (0..=steps).any(|n| {
             let v = side * (reach[0] + (reach[1] - reach[0]) * n as f64 / steps as f64);
             !self.is_free([at[0] + v * across[0], at[1] + v * across[1]])
         })
     }
 
-    /// Every way out that its type counts is open for some metres, and every one that it denies is closed.
+    /// Every way out that its type counts is open for some metres, or as far as it leads, and every one that it denies is
+    /// closed.
     fn junction(&self, labels: &[Label], kind: JunctionKind, at: [f64; 2], corridors: &[u32]) -> f64 {
         let mut sure = 1.0_f64;
         let own: Vec<([[f64; 2]; 2], f64)> = corridors
@@ -171,29 +186,50 @@ impl Looks<'_> {
         for (n, &(axis, width)) in own.iter().enumerate() {
             let [heading, across] = frame_of(axis);
             let others = own.iter().enumerate().filter(|(m, _)| *m != n).map(|(_, (_, width))| *width);
-            let reach = if kind == JunctionKind::End { 0.0 } else { others.fold(0.0, f64::max).max(0.5 * width) / 2.0 };
+            let [side, reach] = if kind == JunctionKind::End {
+                [0.0; 2]
+            } else {
+                let met = others.fold(0.0, f64::max);
+                [met, met.max(0.5 * width)].map(|width| width / 2.0)
+            };
             for sign in [-1.0, 1.0] {
                 let way = [sign * heading[0], sign * heading[1]];
-                let end = axis.map(|end| (end[0] - at[0]) * way[0] + (end[1] - at[1]) * way[1]);
-                let is_arm = end[0].max(end[1]) > reach + BEYOND;
                 // Another corridor may be this one's other half.
-                let is_other = own.iter().enumerate().any(|(m, (other, _))| {
+                let is_along = |other: &[[f64; 2]; 2]| {
                     let [direction, _] = frame_of(*other);
-                    let ahead = other.map(|end| (end[0] - at[0]) * way[0] + (end[1] - at[1]) * way[1]);
-                    m != n
-                        && (direction[0] * way[0] + direction[1] * way[1]).abs() > 0.9
-                        && ahead[0].max(ahead[1]) > reach + BEYOND
+                    (direction[0] * way[0] + direction[1] * way[1]).abs() > 0.9
+                };
+                let ends = own.iter().filter(|(other, _)| is_along(other)).flat_map(|(other, _)| other);
+                let far = ends.map(|end| (end[0] - at[0]) * way[0] + (end[1] - at[1]) * way[1]).fold(0.0, f64::max);
+                let out = |from| Out { at, way, across, width: MIDDLE * width, from };
+                sure = sure.min(if far > reach + BEYOND {
+                    self.opened(&out(reach), ARM.min(far - reach))
+                } else {
+                    self.closed(&out(side), ARM.max(widest))
                 });
-                let depth = if is_arm { ARM } else { ARM.max(widest) };
-                let steps = (depth / self.step()).ceil() as usize;
-                let open = (1..=steps)
-                    .map(|n| reach + n as f64 * self.step())
-                    .map(|t| self.open([at[0] + t * way[0], at[1] + t * way[1]], across, MIDDLE * width))
-                    .fold(1.0, f64::min);
-                sure = sure.min(if is_arm || is_other { open } else { 1.0 - open });
             }
         }
         if own.is_empty() { 0.0 } else { sure }
+    }
+
+    /// Free share of a way out where it is the least open, over some metres.
+    fn opened(&self, out: &Out, depth: f64) -> f64 {
+        let steps = (depth / self.step()).ceil() as usize;
+        let places = (1..=steps).map(|n| out.from + n as f64 * depth / steps as f64);
+        places.map(|t| self.open(out.place(t), out.across, out.width)).fold(1.0, f64::min)
+    }
+
+    /// Share of a way out that does not lead on so many metres: something that is not free lies in it.
+    fn closed(&self, out: &Out, depth: f64) -> f64 {
+        let step = self.step_through_walls();
+        let steps = ((depth - SIDE[0]) / step).ceil() as usize;
+        let is_closed = |lane: [f64; 2]| {
+            let place = |t: f64| [0, 1].map(|n| lane[n] + t * out.way[n]);
+            (0..=steps).any(|n| !self.is_free(place(SIDE[0] + n as f64 * step)))
+        };
+        let lanes = self.lanes(out.place(out.from), out.across, out.width);
+        let count = lanes.len() as f64;
+        lanes.filter(|lane| is_closed(*lane)).count() as f64 / count
     }
 
     /// Share of the outline with something behind it: the rest is open, a door or the end of what was seen.

@@ -47,6 +47,11 @@ impl<'a> Looks<'a> {
         STEP.max(FINE * self.resolution())
     }
 
+    /// The same where a wall may be one pixel thick: each pixel on the way; of fine maps walls are more.
+    pub fn step_through_walls(&self) -> f64 {
+        self.resolution().clamp(STEP / 8.0, STEP / 2.0)
+    }
+
     pub fn state(&self, point: [f64; 2]) -> State {
         let Some(pixel) = self.grid.pixel_at(point) else { return State::Unknown };
         self.asked.set(self.asked.get().with(pixel));
@@ -59,10 +64,18 @@ impl<'a> Looks<'a> {
 
     /// Free share of a line across a way.
     pub fn open(&self, at: [f64; 2], across: [f64; 2], width: f64) -> f64 {
-        let count = (width / self.step()).ceil().max(1.0);
-        let offsets = (0..count as usize).map(|n| ((n as f64 + 0.5) / count - 0.5) * width);
-        let free = offsets.filter(|v| self.is_free([at[0] + v * across[0], at[1] + v * across[1]])).count();
-        free as f64 / count
+        let lanes = self.lanes(at, across, width);
+        let count = lanes.len() as f64;
+        lanes.filter(|place| self.is_free(*place)).count() as f64 / count
+    }
+
+    /// Places across a way, a step apart, one at least.
+    pub fn lanes(&self, at: [f64; 2], across: [f64; 2], width: f64) -> impl ExactSizeIterator<Item = [f64; 2]> {
+        let count = (width / self.step()).ceil().max(1.0) as usize;
+        (0..count).map(move |n| {
+            let v = ((n as f64 + 0.5) / count as f64 - 0.5) * width;
+            [at[0] + v * across[0], at[1] + v * across[1]]
+        })
     }
 
     /// True when something stands about a face so far across from a place.
