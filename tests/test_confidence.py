@@ -39,7 +39,7 @@ def test_a_survey_says_so_where_the_evidence_does_not_decide() -> None:
 
 
 def hall(aisle: float, head: float, wall: float) -> zoo.Picture:
-    """A hall of six rows of a metre at 0.05 m, its walls so thick, with floor outside; aisles and head aisles so wide."""
+    """A hall of six rows of a metre, with floor outside its walls; metres, and pixels of 0.05 m."""
     depth = 6.0 + 7.0 * aisle
     plan = zoo.Canvas(1000, round((depth + 2.0 * wall + 14.0) / 0.05), zoo.FREE)
 

@@ -143,6 +143,27 @@ def test_the_unknown_between_two_halls_is_no_rack() -> None:
     assert score(groundplan.survey(made.map).to_dict(), made.truth)["rack_precision"] >= 0.95
 
 
+@pytest.mark.parametrize("wall", [0.6, 1.0])
+def test_walls_that_are_drawn_solid_are_no_racks_be_the_racks_solid_too(wall: float) -> None:
+    # Two halls of 27 m by 30 m with a door of a metre between them, as a plan is drawn.
+    picture = np.full((int(20 * (32 + 2 * wall)), int(20 * (56 + 3 * wall))), 205, np.uint8)
+
+    def draw(x: float, y: float, width: float, depth: float, value: int) -> None:
+        picture[
+            round(20 * y) + 20 : round(20 * (y + depth)) + 20, round(20 * x) + 20 : round(20 * (x + width)) + 20
+        ] = value
+
+    draw(0.0, 0.0, 54 + 3 * wall, 30 + 2 * wall, 0)
+    for left in (wall, 27 + 2 * wall):
+        draw(left, wall, 27, 30, 254)
+        for row in range(6):
+            draw(left + 3.5, wall + 3.5 + 4.4 * row, 20, 1.2, 0)
+    draw(27 + wall, 12.4 + wall, wall, 1.0, 254)
+    survey = groundplan.survey(picture, resolution=0.05)
+    assert sorted(rack["width"] for rack in survey.of_kind("rack")) == pytest.approx([1.2] * 12, abs=0.1)
+    assert [len(survey.of_kind(kind)) for kind in ("region", "door")] == [2, 1]
+
+
 def test_a_row_goes_on_where_one_of_its_aisles_was_not_driven() -> None:
     pytest.importorskip("shapely", reason="scores need shapely and scipy")
     made = simulate.warehouse(seed=114, width=60.0, depth=40.0, partial=0.5, lidar_range=12.0, **SMALL)

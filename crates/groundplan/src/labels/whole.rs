@@ -9,6 +9,8 @@ use super::racks;
 use super::rows::{Crossings, Row, SHORTEST, heaviest};
 use super::turned::Turned;
 use crate::bands::flat_map_each;
+use crate::ends::wider;
+use std::ops::Range;
 
 /// So many times its length a row counts whose two faces are seen.
 const SEEN_BOTH: f64 = 1.3;
@@ -32,6 +34,8 @@ const NEAR: f64 = 0.15;
 const INSET: f64 = 0.3;
 const UNKNOWN: f64 = 0.965;
 const HIDDEN: f64 = 0.4;
+/// A wall goes on beyond a row's ends for so far, metres.
+const ON: f64 = 0.5;
 
 /// The racks of a place; the rows between its corridors are known, and the racks that stand on legs.
 pub fn find(
@@ -117,9 +121,23 @@ fn have_kin(views: &[Turned], rows: &[&Row], others: &[&Row]) -> Vec<bool> {
     rows.iter().map(|row| has_kin(row)).collect()
 }
 
-/// True when a row is no deeper than walls are, or closed all along and nothing known between.
+/// True when a row is no deeper than walls are, or closed all along and nothing known between, or solid and goes on as that.
 fn is_as_walls(views: &[Turned], row: &Row) -> bool {
-    row.is_shallow() || is_shell(&views[row.direction], row)
+    let view = &views[row.direction];
+    row.is_shallow() || is_shell(view, row) || is_solid(view, row)
+}
+
+/// True when all of a row is occupied and something that is not free lies beyond both its ends: it goes on to the corners of
+/// the walls, as it would where a plan was drawn.
+fn is_solid(view: &Turned, row: &Row) -> bool {
+    let [first, end] = row.along.map(|u| view.column(u));
+    let beyond = (ON / view.cell).ceil() as usize;
+    let [low, high] = wider(row.across, -view.cell);
+    let goes_on = |columns: Range<usize>| view.mean_blocked(columns, low, high) >= CLOSED;
+    let occupied = || view.some_occupied(first..end, low, high).iter().sum::<f64>() / (end - first).max(1) as f64;
+    goes_on(first.saturating_sub(beyond)..first)
+        && goes_on(end..(end + beyond).min(view.size[0]))
+        && occupied() >= CLOSED
 }
 
 fn is_shell(view: &Turned, row: &Row) -> bool {
