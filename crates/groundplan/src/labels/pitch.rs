@@ -26,6 +26,8 @@ const ALONG: [f64; 2] = [0.15, 0.025];
 const ABOUT: f64 = 4.0;
 /// A pitch recurs about a row where more than chance are so far apart by as many of its deviations.
 const RECURS: f64 = 2.0;
+/// Two of one pitch are another to so many steps.
+const HALVES: f64 = 2.0;
 
 /// From post to post along the rows of a direction.
 pub struct Pitch {
@@ -46,11 +48,13 @@ impl Pitch {
             wider(ends, ABOUT).map(|place| ((place - self.start[axis]) / STEP).floor() as i32)
         };
         let counts = self.parts.within(steps(row.along, 0), steps(row.across, 1));
+        let own = counts.pitch(&self.along);
         let lag = (self.common / STEP).round() as usize;
         if !(FIRST..=LAST).contains(&lag) || counts.excess(1, lag).1 >= RECURS {
-            return Some(self.common);
+            // What is common may be two bays where posts of another hall say so.
+            return own.filter(|own| (self.common - 2.0 * own).abs() <= HALVES * STEP).or(Some(self.common));
         }
-        counts.pitch(&self.along)
+        own
     }
 }
 
