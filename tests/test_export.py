@@ -241,6 +241,32 @@ def test_what_stands_in_the_way_of_lanes_is_told(tmp_path: Path, capsys: pytest.
     assert ran.code == 3 and "hint: a map is surveyed first: groundplan survey" in ran.err
 
 
+@pytest.mark.parametrize("name", [name for name, form in FORMATS.items() if "spurs" in form.options])
+def test_every_format_with_lanes_tells_that_there_are_none_and_what_is_too_narrow(
+    name: str, saved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    graph = ("--graph", "roads") if "graph" in FORMATS[name].options else ()
+    ran = call(capsys, "export", saved, "--to", name, "-o", tmp_path, "--vehicle-width", "99", *graph)
+    if name == "nav2":
+        assert ran.code == 3 and "error: the survey has no lanes" in ran.err
+        return
+    count = len(demo().of_kind("corridor"))
+    assert ran.code == 0 and "warning: the road map is empty: no corridor, and no door" in ran.err
+    assert f"{count} of {count} corridors are narrower than the 99 m asked for and have no lane: A" in ran.err
+
+
+def test_corridors_that_a_vehicle_does_not_fit_are_named_with_its_width(
+    saved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    one, *others = sorted(road_map(demo(), vehicle_width=99).narrow, key=lambda corridor: corridor.width)
+    wide = (one.width + others[0].width) / 2
+    ran = call(capsys, "export", saved, "--to", "lif,dxf", "-o", tmp_path, "--vehicle-width", f"{wide}")
+    said = f"1 of {len(others) + 1} corridors is narrower than the {wide:g} m asked for and has no lane"
+    told = [line for line in ran.err.splitlines() if "narrower" in line]
+    assert ran.code == 0 and told == [f"warning: {said}: {one.id} ({one.width:.2f} m)"]
+    assert "narrower" not in call(capsys, "export", saved, "--to", "lif", "-o", tmp_path).err
+
+
 def test_of_all_formats_those_are_written_whose_libraries_and_pixels_are_there(
     saved: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -281,7 +281,11 @@ def test_what_a_vehicle_does_not_fit_is_left_out() -> None:
     some = road_map(demo(), vehicle_width=(widths[2] + widths[3]) / 2)
     assert {lane.name for lane in some.lanes} < {lane.name for lane in whole.lanes}
     assert all(lane.left + lane.right > widths[2] for lane in some.lanes)
-    assert road_map(demo(), vehicle_width=50.0).nodes == []
+    assert {(corridor.width, corridor.least) for corridor in some.narrow} == {
+        (width, (widths[2] + widths[3]) / 2) for width in widths[:3]
+    }
+    assert {corridor.name for corridor in some.narrow}.isdisjoint(lane.name for lane in some.lanes)
+    assert road_map(demo(), vehicle_width=50.0).nodes == [] and whole.narrow == []
 
 
 def test_narrow_corridors_have_lanes_where_all_are_narrow() -> None:
@@ -296,7 +300,8 @@ def test_a_gap_through_a_row_has_no_lane_but_for_a_vehicle_that_fits() -> None:
     narrow = next(n for n, label in enumerate(survey.labels) if label.get("name") == "C06")
     labels = [label | {"width": 0.9} if n == narrow else label for n, label in enumerate(survey.labels)]
     gap = dataclasses.replace(survey, labels=labels)
-    assert "C06" not in {lane.name for lane in road_map(gap).lanes}
+    roads = road_map(gap)
+    assert "C06" not in {lane.name for lane in roads.lanes} and [one.name for one in roads.narrow] == ["C06"]
     assert "C06" in {lane.name for lane in road_map(gap, vehicle_width=0.6).lanes}
 
 

@@ -114,9 +114,9 @@ def run(arguments: argparse.Namespace) -> None:
         if map is not None:
             given["map"] = map
         out = arguments.out or f"{file.parent / 'export'}{os.sep}"
-        written, refused, blocked = write(survey, arguments.to, out, given, status)
+        written, refused, told = write(survey, arguments.to, out, given, status)
     if not arguments.quiet:
-        for sentence in blocked:
+        for sentence in told:
             terminal.say("warning", sentence)
         terminal.put("".join(f"{file}\n" for file in written))
     tell(refused)
@@ -191,31 +191,43 @@ def write(
                 if len(forms) == 1 or not fault.code.startswith("export."):
                     raise
                 refused[form.name] = fault
-        blocked = list(told_blocked(survey, [form for form in forms if form.name not in refused], given))
-    return written, refused, blocked
+        told = list(told_lanes(survey, [form for form in forms if form.name not in refused], given))
+    return written, refused, told
 
 
-#: So many pieces of lane are named, and the others counted.
+#: So many pieces of lane, or corridors, are named, and the others counted.
 NAMED = 4
 
 
-def told_blocked(survey: Survey, forms: list[Format], given: dict[str, Any]) -> Iterator[str]:
-    """What the road map leaves out because something stands in its way, or that it is empty."""
-    taking = [form for form in forms if "spurs" in form.options and not _is_of_places(form, given)]
-    if not taking:
+def told_lanes(survey: Survey, forms: list[Format], given: dict[str, Any]) -> Iterator[str]:
+    """What the road map leaves out: what a vehicle does not fit, where something stands in its way, or all."""
+    if not any("spurs" in form.options and not _is_of_places(form, given) for form in forms):
         return
-    from groundplan.export._formats import OF_ROADS, ROADS
+    from groundplan.export._formats import ROADS
     from groundplan.roadmap import road_map
 
     roads = road_map(survey, **{name: given[name] for name in (*ROADS, "map") if name in given})
-    if not roads.lanes and any(form.name in OF_ROADS for form in taking):
-        yield "the road map is empty: no corridor, and no door between regions, fits the vehicle"
+    fits = "fits the vehicle" if "vehicle_width" in given else "has a lane"
+    if not roads.lanes:
+        yield f"the road map is empty: no corridor, and no door between regions, {fits}"
+    # Without a vehicle they are gaps for people, and no lane is expected there.
+    if roads.narrow and "vehicle_width" in given:
+        out, all = len(roads.narrow), len(survey.of_kind("corridor"))
+        asked = f"narrower than the {given['vehicle_width']:g} m asked for"
+        said = f"is {asked} and has" if out == 1 else f"are {asked} and have"
+        named = [f"{corridor.id} ({corridor.width:.2f} m)" for corridor in roads.narrow]
+        yield f"{out} of {all} corridors {said} no lane: {_some(named)}"
     if roads.blocked:
-        named = [f"{piece.id} at ({piece.at[0]:.2f}, {piece.at[1]:.2f})" for piece in roads.blocked[:NAMED]]
-        more = [f"{len(roads.blocked) - NAMED} more"] if len(roads.blocked) > NAMED else []
+        named = [f"{piece.id} at ({piece.at[0]:.2f}, {piece.at[1]:.2f})" for piece in roads.blocked]
         out, stay = len(roads.blocked), sum(lane.kind == "aisle" for lane in roads.lanes)
         said = "1 lane of an aisle is" if out == 1 else f"{out} lanes of aisles are"
-        yield f"{said} left out where something stands in the way, {stay} stay: {', '.join(named + more)}"
+        yield f"{said} left out where something stands in the way, {stay} stay: {_some(named)}"
+
+
+def _some(named: list[str]) -> str:
+    """The first of a list, and how many more there are."""
+    more = [f"{len(named) - NAMED} more"] if len(named) > NAMED else []
+    return ", ".join(named[:NAMED] + more)
 
 
 def _is_of_places(form: Format, given: dict[str, Any]) -> bool:

@@ -186,10 +186,10 @@ def run(arguments: argparse.Namespace) -> None:
         picture = None if arguments.no_picture else "survey.png"
         written = [] if out is None else write(out, found, map, status, picture, arguments.figures)
         refused: export.Refused = {}
-        blocked: list[str] = []
+        told: list[str] = []
         if arguments.export:
             place = f"{Path(out or '') / 'export'}{os.sep}"
-            files, refused, blocked = export.write(found, arguments.export, place, {"map": map}, status)
+            files, refused, told = export.write(found, arguments.export, place, {"map": map}, status)
             written += [str(file) for file in files]
     if arguments.json:
         terminal.put(found.to_json())
@@ -200,7 +200,7 @@ def run(arguments: argparse.Namespace) -> None:
             terminal.put(summary(found))
         for warning in found.warnings:
             terminal.say("warning", f"{warning.message} [{warning.code}]")
-        for sentence in blocked:
+        for sentence in told:
             terminal.say("warning", sentence)
         for file in written:
             terminal.say("wrote", file)

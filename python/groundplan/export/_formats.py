@@ -88,8 +88,6 @@ OPTIONS: dict[str, Option] = {
 
 #: What every format with a road map takes, for `groundplan.roadmap.road_map`.
 ROADS = ("vehicle_width", "rules", "spurs")
-#: Formats that are nothing without one.
-OF_ROADS = ("lif", "nav2", "opentcs", "rmf-nav")
 
 FORMATS: dict[str, Format] = {
     form.name: form

@@ -19,13 +19,13 @@ from typing import TYPE_CHECKING, Any
 
 from groundplan._errors import ParameterError
 from groundplan._extras import needed
-from groundplan.roadmap._model import Blocked, Directed, Lane, Node, PickFace, RoadMap, Zone
+from groundplan.roadmap._model import Blocked, Directed, Lane, Narrow, Node, PickFace, RoadMap, Zone
 
 if TYPE_CHECKING:
     from groundplan.maps import Map
     from groundplan.survey import Survey
 
-__all__ = ["Blocked", "Directed", "Lane", "Node", "PickFace", "RoadMap", "Zone", "built_once", "road_map"]
+__all__ = ["Blocked", "Directed", "Lane", "Narrow", "Node", "PickFace", "RoadMap", "Zone", "built_once", "road_map"]
 
 _built: ContextVar[dict[Any, RoadMap] | None] = ContextVar("built", default=None)
 
@@ -46,7 +46,7 @@ def road_map(
         Its corridors, junctions, racks, regions and doors are used.
     vehicle_width
         Metres; corridors and doors that are narrower are left out. By default a corridor under 1.2 m
-        is where ways are usually more than two and a half times as wide: a gap for people.
+        is where ways are usually more than two and a half times as wide: a gap for people. `RoadMap.narrow` has them.
     rules
         Speeds and one-way lanes, as `groundplan.roadmap._rules` describes them: a TOML file, or its entries.
     spurs

@@ -14,7 +14,7 @@ from groundplan.export._places import Place, main_angle, places
 from groundplan.maps import Map
 from groundplan.roadmap import _centre, _doors, _faces, _lanes, _open
 from groundplan.roadmap._lanes import Way
-from groundplan.roadmap._model import Blocked, Lane, Node, PickFace, Point, RoadMap
+from groundplan.roadmap._model import Blocked, Lane, Narrow, Node, PickFace, Point, RoadMap
 from groundplan.roadmap._pixels import CLEAR_M, Pixels
 from groundplan.roadmap._rules import Rule, ruled
 from groundplan.roadmap._zones import zones
@@ -47,6 +47,8 @@ class _Builder:
         ways = _lanes.ways([p for p in self.places if self._open(p)])
         least = _lanes.narrowest(ways) if vehicle_width is None else vehicle_width
         self.ways = {corridor: way for corridor, way in ways.items() if way.width >= least}
+        left = [way for way in ways.values() if way.width < least]
+        self.narrow = [Narrow(w.place.id, w.place.name, w.place.label, w.width, least) for w in left]
         if pixels is not None:
             for corridor, way in self.ways.items():
                 keep = pixels.keep(way.width, vehicle_width)
@@ -274,4 +276,4 @@ class _Builder:
         lanes = [dataclasses.replace(lane, start=place[lane.start], end=place[lane.end]) for lane in self.lanes]
         faces = [PickFace(f.id, f.at, f.heading, place[f.node], f.rack, f.width) for f in self.picks if f.node in place]
         found = list(zones(self.places, self.ways, self.rules, main_angle(self.survey)))
-        return RoadMap([self.nodes[n] for n in kept], lanes, faces, found, self.blocked)
+        return RoadMap([self.nodes[n] for n in kept], lanes, faces, found, self.blocked, self.narrow)

@@ -146,14 +146,28 @@ class Blocked:
 
 
 @dataclass(frozen=True)
+class Narrow:
+    """A corridor that has no lane because its `width` is less than the `least` asked for, both in metres."""
+
+    id: str
+    name: str
+    label: int
+    width: float
+    least: float
+
+
+@dataclass(frozen=True)
 class RoadMap:
-    """Nodes, lanes between them, pick faces and zones; and the pieces of lane that something stands in the way of."""
+    """Nodes, lanes between them, pick faces and zones; the pieces of lane that something stands in the way of, and the
+    corridors that are too narrow for one.
+    """  # noqa: D205
 
     nodes: list[Node] = field(default_factory=list)
     lanes: list[Lane] = field(default_factory=list)
     faces: list[PickFace] = field(default_factory=list)
     zones: list[Zone] = field(default_factory=list)
     blocked: list[Blocked] = field(default_factory=list)
+    narrow: list[Narrow] = field(default_factory=list)
 
     def __repr__(self) -> str:
         return f"RoadMap({', '.join(f'{len(getattr(self, part.name))} {part.name}' for part in fields(self))})"
