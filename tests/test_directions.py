@@ -210,6 +210,23 @@ def test_directions_that_are_given_are_taken() -> None:
     assert survey.problems() == []
 
 
+@pytest.mark.parametrize(("angles", "near"), [([10.0, 10.5], True), ([-89.0, 5.0, 89.0], True), ([10.0, 18.0], False)])
+def test_directions_that_are_given_nearer_than_two_may_be_found_are_kept_and_told(
+    angles: list[float], near: bool
+) -> None:
+    for given in ({"directions_angles_deg": angles}, {"directions": groundplan.Directions.of(np.radians(angles))}):
+        survey = groundplan.survey(ZOO["single_room"](), resolution=RESOLUTION, **given)
+        assert sorted(np.degrees(survey.directions.angles)) == pytest.approx(angles)
+        told = [warning.message for warning in survey.warnings if warning.code == "near-directions"]
+        assert len(told) == near
+        for sentence in told:
+            assert all(f"{angle:g}" in sentence for angle in (angles[0], angles[-1], 8))
+    wider = groundplan.survey(
+        ZOO["single_room"](), resolution=RESOLUTION, directions_angles_deg=[10, 18], directions_separation_deg=9
+    )
+    assert "near-directions" in {warning.code for warning in wider.warnings}
+
+
 def test_the_histogram_counts_every_edge_pixel_once() -> None:
     map = groundplan.from_array(ZOO["turned_warehouse"](), RESOLUTION)
     gradients = groundplan.find_gradients(map)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Sequence
 from functools import cache
@@ -16,6 +17,7 @@ from groundplan._memory import give_back
 from groundplan._results import (
     Adjacency,
     Directions,
+    Floats,
     Lines,
     MapInfo,
     Occupancy,
@@ -149,15 +151,18 @@ def surveyed(
         "occupancy": Occupancy,
         "walls": Walls,
     }
+    settings = resolve(parameters)
+    given = "directions" in own or settings["directions.angles_deg"] is not None
+    near = _near(found["directions"]["angles"], settings["directions.separation_deg"]) if given else []
     survey = Survey(
         map=MapInfo(map.image, map.width, map.height, map.resolution, map.origin),
-        parameters=resolve(parameters),
+        parameters=settings,
         radiograms=[made(Radiogram, arrays) for arrays in found["radiograms"]],
         subdivision=NOT_YET,
         adjacency=NOT_YET,
         labels=NOT_YET,
         patterns=found["patterns"],
-        warnings=[*map.warnings, *(MapWarning(code, message) for code, message in found["warnings"])],
+        warnings=[*map.warnings, *(MapWarning(code, message) for code, message in found["warnings"]), *near],
         **{name: made(kind, found[name]) for name, kind in stages.items()},
     )
     # For its routes and its updates, and no part of what it is.
@@ -184,6 +189,18 @@ def surveyed(
     for name in survey.__dict__["_later"]:
         del survey.__dict__[name]
     return survey
+
+
+def _near(angles: Floats, separation: float) -> list[MapWarning]:
+    """A warning of the nearest two directions that were given, where they would be one had they been found."""
+    pairs = itertools.combinations(np.degrees(angles).tolist(), 2)
+    apart = [(abs((a - b + 90) % 180 - 90), a, b) for a, b in pairs]
+    least, a, b = min(apart, default=(90.0, 0.0, 0.0))
+    if round(least, 6) >= separation:
+        return []
+    said = f"the directions {a:.6g} and {b:.6g} deg that were given are {least:.6g} deg apart"
+    kept = f"directions.separation_deg = {separation:g} makes one of two that are found so near, but both are kept"
+    return [MapWarning("near-directions", f"{said}: {kept}")]
 
 
 def _is_array(value: object) -> bool:
