@@ -38,15 +38,58 @@ def test_lines_of_your_own_are_of_the_directions_that_are_found() -> None:
     ("given", "sentence"),
     [
         ({"directions": [0.0, 1.5]}, "directions has to be Directions and is a list"),
-        ({"directions": Directions.of([float("nan")])}, "an angle of the directions is not finite"),
+        (
+            {"directions": dataclasses.replace(Directions.of(0.0), angles=np.array([np.nan]))},
+            "an angle of the directions is not finite",
+        ),
         ({"lines": [1.0]}, "lines has to be Lines and is a list"),
         ({"lines": Lines.of([9], [1.0])}, "a line names a direction that there is not"),
-        ({"lines": Lines.of([0], [float("inf")])}, "an offset of the lines is not finite"),
+        (
+            {"lines": dataclasses.replace(Lines.of([0], [1.0]), offsets=np.array([np.inf]))},
+            "an offset of the lines is not finite",
+        ),
         ({"lines": dataclasses.replace(Lines.of([0], [1.0]), widths=np.zeros(1, np.float32))}, "an array is not of"),
     ],
 )
 def test_a_survey_refuses_what_does_not_fit(given: dict[str, Any], sentence: str) -> None:
     assert sentence in str(refused(groundplan.survey, MAP, **given))
+
+
+@pytest.mark.parametrize(
+    ("angles", "sentence", "hint"),
+    [
+        ([0.0, float("nan")], "angles[1] is nan, which is not finite", "Directions.of([0.0, math.pi / 2])"),
+        ([17, -73], "angles[0] is 17, and no angle in radians is beyond a turn", "np.radians"),
+        ([0, 0], "angles[0] and angles[1], 0 and 0, are one direction", "each is given once"),
+        ([1.0, 0.5, 0.5 - np.pi], "angles[1] and angles[2], 0.5 and -2.64159, are one direction", "half a turn"),
+        ("ab", "angles has to be a list of numbers and is 'ab'", "Directions.of"),
+        ([[0.0, 1.0]], "angles has to be a list of numbers and is [[0.0, 1.0]]", "Directions.of"),
+        (None, "angles has to be a list of numbers and is None", "Directions.of"),
+    ],
+)
+def test_what_is_no_angle_in_radians_makes_no_direction(angles: Any, sentence: str, hint: str) -> None:
+    fault = refused(Directions.of, angles)
+    assert str(fault).startswith(sentence) and hint in str(fault.hint)
+
+
+def test_directions_of_your_own_are_brought_into_half_a_turn() -> None:
+    assert Directions.of([np.pi / 2, 2 * np.pi]).angles == pytest.approx([-np.pi / 2, 0.0])
+    assert Directions.of(0.5).angles.tolist() == [0.5] and len(Directions.of([])) == 0
+
+
+@pytest.mark.parametrize(
+    ("directions", "offsets", "sentence"),
+    [
+        ([0, 1], [1], "directions and offsets have 2 and 1 values"),
+        ([-1], [1], "directions[0] is -1, which is no index"),
+        ([0, 0.5], [1, 2], "directions[1] is 0.5, which is no index"),
+        ([2**32], [1], "directions[0] is 4.29497e+09, which is no index"),
+        ("a", [1], "directions has to be a list of numbers and is 'a'"),
+        ([0], [float("inf")], "offsets[0] is inf, which is not finite"),
+    ],
+)
+def test_what_is_no_index_or_no_offset_makes_no_line(directions: Any, offsets: Any, sentence: str) -> None:
+    assert str(refused(Lines.of, directions, offsets)) == sentence
 
 
 def test_a_hint_says_what_makes_the_right_input() -> None:

@@ -6,6 +6,7 @@ outside) is `NONE`. Section numbers are those of Gholami Shahbandi, Åstrand and
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -13,6 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from groundplan import _core
+from groundplan._errors import ParameterError
+from groundplan.maps.map_server import shown
 
 Floats = npt.NDArray[np.float64]
 Ids = npt.NDArray[np.uint32]
@@ -31,6 +34,8 @@ KINDS = ("corridor", "junction", "rack", "region", "door", "pillar")
 Label = dict[str, Any]
 #: Labels of this confidence or less are shown and spoken of as unsure.
 UNSURE = _core.UNSURE
+#: Directions that are given nearer than this are one, radians.
+ONE_DIRECTION = 1e-6
 
 
 class Stage:
@@ -95,8 +100,22 @@ class Directions(Stage):
 
     @classmethod
     def of(cls, angles: npt.ArrayLike) -> Directions:
-        """Directions of your own, angles in radians; they are brought into [-pi/2, pi/2)."""
-        own = np.atleast_1d(np.asarray(angles, dtype=np.float64))
+        """Directions of your own, angles in radians, a turn at most; they are brought into [-pi/2, pi/2).
+
+        Raises
+        ------
+        ParameterError
+            ``stage.input`` for what is no angle in radians, and for one direction given twice.
+        """
+        own = _numbers("angles", angles, "such as Directions.of([0.0, math.pi / 2])")
+        for k, angle in enumerate(own.tolist()):
+            if abs(angle) > 2 * np.pi:
+                said = f"angles[{k}] is {angle:g}, and no angle in radians is beyond a turn"
+                raise ParameterError("stage.input", said, "Directions.of(np.radians(angles)) takes degrees")
+        for k, n in itertools.combinations(range(len(own)), 2):
+            if abs((own[k] - own[n] + np.pi / 2) % np.pi - np.pi / 2) < ONE_DIRECTION:
+                said = f"angles[{k}] and angles[{n}], {own[k]:g} and {own[n]:g}, are one direction"
+                raise ParameterError("stage.input", said, "each is given once; half a turn further it is the same")
         return cls((own + np.pi / 2) % np.pi - np.pi / 2, np.ones(len(own)), np.zeros(0), 1.0)
 
 
@@ -174,10 +193,22 @@ class Lines(Stage):
 
         Offsets are along the normal (-sin, cos) of the direction's angle in [-pi/2, pi/2): an upright line at x has
         the angle -pi/2, the normal (1, 0) and so the offset x.
+
+        Raises
+        ------
+        ParameterError
+            ``stage.input`` for what is no index or no offset, and for more of the one than of the other.
         """
-        own = np.atleast_1d(np.asarray(offsets, dtype=np.float64))
-        families = np.atleast_1d(np.asarray(directions, dtype=np.uint32))
-        return cls(families, own, np.ones(len(own)), np.zeros(len(own)), 0.0)
+        own = _numbers("offsets", offsets, "metres, one for each line")
+        families = _numbers("directions", directions, "indices of Directions, from 0 on, one for each line")
+        for k, family in enumerate(families.tolist()):
+            if family != int(family) or not 0 <= family <= np.iinfo(np.uint32).max:
+                said = f"directions[{k}] is {family:g}, which is no index"
+                raise ParameterError("stage.input", said, "the first direction is 0")
+        if len(families) != len(own):
+            said = f"directions and offsets have {len(families)} and {len(own)} values"
+            raise ParameterError("stage.input", said, "each line has one of both")
+        return cls(families.astype(np.uint32), own, np.ones(len(own)), np.zeros(len(own)), 0.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -301,6 +332,25 @@ class Adjacency(Stage):
 
     def __len__(self) -> int:
         return len(self.edges)
+
+
+def _numbers(name: str, values: npt.ArrayLike, hint: str) -> Floats:
+    """Numbers in a row, all of them finite.
+
+    Raises
+    ------
+    ParameterError
+        ``stage.input``.
+    """
+    try:
+        own: Floats = np.atleast_1d(np.asarray(values, dtype=np.float64))
+    except (TypeError, ValueError, OverflowError):
+        own = np.empty((0, 0))
+    if own.ndim != 1 or values is None:
+        raise ParameterError("stage.input", f"{name} has to be a list of numbers and is {shown(values)}", hint)
+    for k in np.flatnonzero(~np.isfinite(own)).tolist():
+        raise ParameterError("stage.input", f"{name}[{k}] is {own[k]}, which is not finite", hint)
+    return own
 
 
 def record(stage: Stage) -> dict[str, Any]:
