@@ -58,6 +58,20 @@ def test_arrays_that_are_no_maps(array: Pixels) -> None:
 @pytest.mark.parametrize(
     ("value", "said", "hint"),
     [
+        (None, "None is no array", "height x width pixels"),
+        ("hall.pgm", "'hall.pgm' is no array", "groundplan.read(path)"),
+        (np.dstack([hall()] * 3), f"an array of shape {(*hall().shape, 3)} is not a map", "array[..., 0]"),
+    ],
+)
+def test_what_makes_no_map_is_told_with_what_would(value: Any, said: str, hint: str) -> None:
+    with pytest.raises(MapError, match=re.escape(said)) as caught:
+        from_array(value, 0.05)
+    assert caught.value.code == "map.pixels" and hint in str(caught.value.hint)
+
+
+@pytest.mark.parametrize(
+    ("value", "said", "hint"),
+    [
         (hall(), f"an array of shape {hall().shape} is no file's path", "groundplan.from_array(array, resolution)"),
         (hall().tolist(), "[[", "groundplan.from_array(array, resolution)"),
         (from_array(hall(), 0.05), " pixels of 0.05 m) is a Map already", "groundplan.survey takes it"),
@@ -135,6 +149,14 @@ def test_a_map_made_by_hand_is_the_one_made_of_an_array() -> None:
     assert by_hand == made and by_hand.origin == (1.0, 2.0, 0.0)
     assert [warning.message for warning in by_hand.warnings] == ["the yaw of the origin is nan: read as 0"]
     assert dataclasses.replace(by_hand, image="hall").warnings == by_hand.warnings
+
+
+def test_a_yaw_of_more_than_a_turn_is_taken_and_told_once() -> None:
+    turned = from_array(hall(), 0.05, (1.0, 2.0, 90.0))
+    said = "the yaw of the origin is 90 rad, more than a turn: if these are degrees, it is 1.5708"
+    assert turned.origin[2] == 90 and [(w.code, w.message) for w in turned.warnings] == [("yaw-degrees", said)]
+    assert dataclasses.replace(turned, image="hall").warnings == turned.warnings
+    assert from_array(hall(), 0.05, (1.0, 2.0, -6.28)).warnings == ()
 
 
 def test_a_map_of_other_arrays_is_told_as_a_stage_tells_it() -> None:

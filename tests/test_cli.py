@@ -86,10 +86,13 @@ def test_no_command_shows_the_help_and_is_wrong_usage(capsys: Capture) -> None:
         ("survey hall.yaml --mode binary", "'binary'", "groundplan survey --help"),
         ("survey hall.yaml --set lines.snrr=4", "there is no parameter lines.snrr", "did you mean lines.snr?"),
         ("survey hall.yaml --set resolution=3", "there is no parameter resolution", "mean the flag --resolution?"),
-        ("survey hall.yaml --set free_thresh=.2", "there is no parameter free.thresh", "mean the flag --free-thresh?"),
+        ("survey hall.yaml --set free_thresh=.2", "there is no parameter free_thresh", "mean the flag --free-thresh?"),
         ("watch --set resolution=3", "there is no parameter resolution", "groundplan parameters lists them all"),
         ("survey hall.yaml --set lines.snr=-4", "lines.snr cannot be -4", "lines.snr takes 0 to 1000"),
         ("survey hall.yaml --set lines.snr", "'lines.snr' is not name=value", "for example --set lines.snr=4"),
+        ("survey hall.yaml --set =4", "'=4' is not name=value", "for example --set lines.snr=4"),
+        ("export s.json --to lif --spurs -1", "--spurs: '-1' is not a number from 0 on", "groundplan export --help"),
+        ("export s.json --to csv,pdf --units mm", "--units says nothing to csv, pdf", "it is for dxf"),
         ("survey hall.yaml --detail medium", "'medium' is neither coarse nor fine nor a number", "survey --help"),
         ("survey hall.yaml --detail 7", "lines.detail cannot be 7", "coarse, fine"),
         ("figures s.json --format gif", "'gif' is none of png, svg, pdf", "groundplan figures --help"),
@@ -143,6 +146,12 @@ def test_survey_writes_its_files_and_prints_a_table(tmp_path: Path, capsys: Capt
     assert ran.err.splitlines()[-2:] == [
         f"wrote: {os.path.join('hall-survey', name)}" for name in ("survey.json", "survey.png")
     ]
+
+
+def test_a_map_that_is_narrower_than_a_decimal_has_a_width(tmp_path: Path, capsys: Capture) -> None:
+    write_pgm(tmp_path / "thin.pgm", hall()[:, 100:101])
+    ran = call(capsys, "survey", "thin.pgm", "--resolution", "0.05", "--no-picture")
+    assert "0.05 x 10.0 m, 1 x 200 pixels of 0.05 m" in ran.out
 
 
 def test_without_a_picture_the_same_survey_is_all_that_is_written(tmp_path: Path, capsys: Capture) -> None:

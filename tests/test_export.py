@@ -178,6 +178,9 @@ def test_what_cannot_be_done_is_refused_before_anything_is_written(tmp_path: Pat
         with pytest.raises(ParameterError) as told:
             demo().export(tmp_path / "out", format, **options)
         assert told.value.code == code
+    with pytest.raises(ParameterError, match="None is no path") as told:
+        demo().export(None, "csv")  # type: ignore[arg-type]
+    assert told.value.code == "export.path"
     assert files(tmp_path) == set()
 
 

@@ -14,7 +14,7 @@ from groundplan.maps import FREE, OCCUPIED, read
 def test_a_bare_image_needs_a_resolution(tmp_path: Path) -> None:
     path = write_pgm(tmp_path / "map.pgm", hall())
     error = refused(path, "map.resolution", str(path))
-    assert "--resolution" in (error.hint or "")
+    assert error.hint == "--resolution sets it, such as --resolution 0.05; in Python resolution=0.05"
     got = read(path, resolution=0.1, origin=(1, 2))
     assert (got.resolution, got.origin) == (0.1, (1.0, 2.0, 0.0))
     assert read(path, resolution=0.1).origin == (0.0, 0.0, 0.0)
@@ -28,6 +28,14 @@ def test_a_yaw_that_is_nan_is_zero(tmp_path: Path, yaw: str) -> None:
     assert got.origin == (1.0, 2.0, 0.0)
     assert codes(got) == ["yaw-nan"]
     assert "map.yaml" in message(got, "yaw-nan")
+
+
+def test_a_yaw_that_may_be_in_degrees_is_told_and_another_that_is_given_beats_it(tmp_path: Path) -> None:
+    write_pgm(tmp_path / "map.pgm", hall())
+    yaml = write_yaml(tmp_path, origin="[1.0, 2.0, 90]")
+    assert codes(read(yaml)) == ["yaw-degrees"] and "in map.yaml is 90 rad" in message(read(yaml), "yaw-degrees")
+    assert codes(read(yaml, origin=(1, 2, 1.57))) == []
+    assert codes(read(yaml, origin=(1, 2, -45))) == ["yaw-degrees"]
 
 
 def test_numbers_as_cpp_writes_them(tmp_path: Path) -> None:

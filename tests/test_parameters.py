@@ -95,6 +95,12 @@ def test_a_setting_that_is_a_flag_s_is_told_the_flag(tmp_path: Path, capsys: Cap
     ran = call(capsys, "survey", "hall.yaml", "--config", "settings.toml")
     said = "there is no parameter resolution\nhint: did you mean the flag --resolution?\n"
     assert (ran.code, ran.err) == (2, f"error: settings.toml: {said}")
+    (tmp_path / "settings.toml").write_text("[map]\nresolution = 0.1\n")
+    ran = call(capsys, "survey", "hall.yaml", "--config", "settings.toml")
+    assert ran.err == f"error: settings.toml: {said.replace('parameter ', 'parameter map.')}"
+    (tmp_path / "settings.toml").write_text("[lines]\nthreads = 3\n")
+    ran = call(capsys, "survey", "hall.yaml", "--config", "settings.toml")
+    assert "there is no parameter lines.threads\nhint: did you mean the flag --threads?" in ran.err
     ran = call(capsys, "survey", "hall.yaml", "--set", "lines.snr=4", "--set", "resolution=0.1", "--set", "origin=0,0")
     assert (ran.code, ran.err) == (2, f"error: {said}")
 
@@ -167,6 +173,13 @@ def test_a_least_width_above_the_greatest_names_both(stage: str, capsys: Capture
     assert ran.code == 2 and said in ran.err
     settings = dict.fromkeys(settings, 3.0)
     groundplan.survey(hall(), resolution=0.05, **settings)
+
+
+def test_a_name_that_there_is_not_is_told_as_it_was_typed() -> None:
+    for name, hint in (("free_thresh", "lists them all"), ("lines_snrr", "did you mean lines.snr?")):
+        with pytest.raises(groundplan.ParameterError, match=f"there is no parameter {name}$") as caught:
+            groundplan.survey(hall(), resolution=0.05, **{name: 0.2})  # type: ignore[arg-type]
+        assert hint in str(caught.value.hint)
 
 
 def test_a_name_that_there_is_not_is_told_whatever_its_value() -> None:

@@ -94,6 +94,7 @@ def test_what_is_no_index_or_no_offset_makes_no_line(directions: Any, offsets: A
 
 def test_a_hint_says_what_makes_the_right_input() -> None:
     assert "Directions.of" in str(refused(groundplan.survey, MAP, directions=[0.0]).hint)
+    assert str(refused(groundplan.survey, MAP, directions=3).hint).startswith("directions_count=3 takes so many")
     assert "groundplan.read" in str(refused(groundplan.find_gradients, "map.yaml").hint)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tomllib
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from groundplan import _core
@@ -44,14 +45,20 @@ def resolve(parameters: dict[str, Any]) -> dict[str, Any]:
 
 
 def named(parameters: dict[str, Any]) -> dict[str, Any]:
-    """Python keywords as the table names them: ``lines_snr`` and ``lines.snr`` are one."""
-    return {name if "." in name else name.replace("_", ".", 1): value for name, value in parameters.items()}
+    """Python keywords as the table names them: ``lines_snr`` and ``lines.snr`` are one; others stay as they are."""
+    dotted = {name: name.replace("_", ".", 1) for name in parameters if "." not in name}
+    return {dotted[name] if dotted.get(name) in _names() else name: value for name, value in parameters.items()}
+
+
+@cache
+def _names() -> frozenset[str]:
+    return frozenset(row["name"] for row in _core.table())
 
 
 def parse(text: str) -> tuple[str, Any]:
     """``name=value`` as typed: a number, a word, several numbers with commas, or ``auto``."""
     name, equals, value = text.partition("=")
-    if not equals:
+    if not equals or not name.strip():
         raise ParameterError("parameter.syntax", f"{text!r} is not name=value", "for example --set lines.snr=4")
     return name.strip(), parse_value(value.strip())
 

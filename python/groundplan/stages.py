@@ -68,7 +68,10 @@ def needs(kind: type[T], name: str, value: object) -> T:
     if isinstance(value, kind):
         return value
     said = f"{name} has to be {a(kind.__name__)} and is {a(type(value).__name__)}"
-    raise ParameterError("stage.input", said, _MADE_BY.get(kind.__name__))
+    hint = _MADE_BY.get(kind.__name__)
+    if kind is Directions and type(value) is int:
+        hint = f"directions_count={value} takes so many; {hint}"
+    raise ParameterError("stage.input", said, hint)
 
 
 def a(noun: str) -> str:

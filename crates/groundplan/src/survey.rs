@@ -289,8 +289,12 @@ fn find_warnings(survey: &Survey, frame: &Frame, edges: usize, parameters: &Para
         warn("odd-scale", format!("the whole map is {millimetres} mm long: is the resolution in metres per pixel?"));
     }
     if edges < FEW_EDGE_PIXELS {
-        let count = if edges == 0 { "no".to_owned() } else { format!("only {edges}") };
-        warn("few-edges", format!("the map has {count} edge pixels: nothing much can be said of it"));
+        let count = match edges {
+            0 => "no edge pixels".to_owned(),
+            1 => "only 1 edge pixel".to_owned(),
+            _ => format!("only {edges} edge pixels"),
+        };
+        warn("few-edges", format!("the map has {count}: nothing much can be said of it"));
     }
     if directions.angles.is_empty() {
         warn("no-structure", "no direction stands out: the map has no straight structure".to_owned());

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -59,7 +60,14 @@ def add_options(own: argparse.ArgumentParser) -> None:
 
 
 def _type(option: Option) -> Any:
-    return {"number": number, "numbers": _listed}.get(option.kind, str)
+    return {"number": _number, "numbers": _listed}.get(option.kind, str)
+
+
+def _number(text: str) -> float:
+    value = number(text)
+    if not 0 <= value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 0 on")
+    return value
 
 
 def _listed(text: str) -> list[float]:
@@ -92,9 +100,8 @@ def options(arguments: argparse.Namespace, forms: list[Format]) -> dict[str, Any
     for name in given:
         if not any(name in form.options for form in forms):
             takers = ", ".join(form.name for form in FORMATS.values() if name in form.options)
-            arguments.parser.error(
-                f"--{name.replace('_', '-')} says nothing to the formats chosen", f"it is for {takers}"
-            )
+            chosen = ", ".join(form.name for form in forms)
+            arguments.parser.error(f"--{name.replace('_', '-')} says nothing to {chosen}", f"it is for {takers}")
     return given
 
 

@@ -30,8 +30,13 @@ Rows = list[tuple[str, str]]
 def _map(survey: Survey) -> Rows:
     info = survey.map
     wide, high = info.width * info.resolution, info.height * info.resolution
-    size = f"{wide:.1f} x {high:.1f} m, {info.width} x {info.height} pixels of {info.resolution:g} m"
+    size = f"{_metres(wide)} x {_metres(high)} m, {info.width} x {info.height} pixels of {info.resolution:g} m"
     return [("map", info.image or "without a name"), ("", size)]
+
+
+def _metres(length: float) -> str:
+    """With one decimal; what is under a metre with two digits, so that no map has no width."""
+    return f"{length:.1f}" if length >= 1 else f"{length:.2g}"
 
 
 def _directions(survey: Survey) -> Rows:

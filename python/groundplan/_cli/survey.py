@@ -151,7 +151,10 @@ def _hold(own: dict[str, Any], parser: Parser, where: str = "") -> None:
         hint = fault.hint
         if fault.code == "parameter.unknown":
             known = resolve({})
-            flag = parser.flag_of(next(name for name in own if name not in known))
+            name = next(name for name in own if name not in known)
+            flag = parser.flag_of(name)
+            if flag is None and not str(hint).startswith("did you mean"):  # [map] and below it resolution
+                flag = parser.flag_of(name.rpartition(".")[2])
             hint = f"did you mean the flag {flag}?" if flag else hint
         raise ParameterError(fault.code, f"{where}{fault}", hint) from fault
 

@@ -50,12 +50,15 @@ def export(
     Raises
     ------
     ParameterError
-        ``export.format``, ``export.option``, ``export.map``, and what a format says of an option's value.
+        ``export.path``, ``export.format``, ``export.option``, ``export.map``, and what a format says of an option's
+        value.
     FormatError
         ``file.write`` when the place cannot be written, and what a format cannot say of this survey.
     GroundplanError
         ``extra.missing`` when a library is not installed.
     """
+    if not isinstance(path, str | os.PathLike):
+        raise ParameterError("export.path", f"{path!r} is no path", "a path is text or a pathlib.Path")
     if isinstance(format, Format):
         form = format
     else:

@@ -63,7 +63,8 @@ class Map:
         origin, odd = check_origin(self.origin)
         object.__setattr__(self, "resolution", check_resolution(self.resolution))
         object.__setattr__(self, "origin", origin)
-        object.__setattr__(self, "warnings", (*self.warnings, *odd))
+        told = {warning.code for warning in self.warnings}
+        object.__setattr__(self, "warnings", (*self.warnings, *(w for w in odd if w.code not in told)))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Map):

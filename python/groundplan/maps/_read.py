@@ -19,7 +19,15 @@ from groundplan.maps._source import Described, Occupancies, Picture, Progress, S
 from groundplan.maps._tally import Tally
 from groundplan.maps._warnings import rounded
 from groundplan.maps.image import read_image
-from groundplan.maps.map_server import check_origin, check_resolution, meant, read_yaml, shown
+from groundplan.maps.map_server import (
+    SETS_ORIGIN,
+    SETS_RESOLUTION,
+    check_origin,
+    check_resolution,
+    meant,
+    read_yaml,
+    shown,
+)
 
 #: What each kind of file is called, and what can be given for it alone.
 _CALLED: dict[Kind, str] = {
@@ -32,6 +40,8 @@ _CALLED: dict[Kind, str] = {
 }
 #: How shares of 1 become a map.
 _SHARES = "of occupancies from 0 to 1: np.where(np.isfinite(a), np.rint(100 * a), -1).astype('int8'), lowest row first"
+#: How a picture of colours becomes one of greys.
+_COLOURS = "of greys that are stored as colours array[..., 0] has them; groundplan.read takes a picture's file"
 _ONLY: dict[str, Kind] = {"topic": "bag", "stamp": "bag", "band": "points", "min_hits": "points"}
 
 
@@ -138,10 +148,10 @@ def read_or_leave(
     pose = described.origin
     if origin is not None:
         pose, odd = check_origin(origin)
-        warnings = [warning for warning in warnings if warning.code != "yaw-nan"] + odd
+        warnings = [warning for warning in warnings if not warning.code.startswith("yaw-")] + odd
     if pose is None:
         if kind == "yaml":
-            hint = meant("origin", described.misspelled) or "--origin sets it, such as --origin 0 0 0"
+            hint = meant("origin", described.misspelled) or SETS_ORIGIN
             raise MapError("map.origin", f"{where} states no origin", hint)
         pose = (0.0, 0.0, 0.0)
     greys = {name: given.get(name) for name in ("unknown", "negate", "mode")}
@@ -226,9 +236,14 @@ def from_array(
             f"{masked(array)} pixels of the array are masked, and what they are is not said",
             "where they are unknown: .filled(205) of uint8, .filled(-1) of int8",
         )
-    array = np.asarray(array)
+    given, array = array, np.asarray(array)
+    if array.ndim == 0:
+        is_path = isinstance(given, str | os.PathLike)
+        hint = "groundplan.read(path) reads a file" if is_path else "height x width pixels of uint8, int8 or bool"
+        raise MapError("map.pixels", f"{shown(given)} is no array", hint)
     if array.ndim != 2 or array.size == 0:
-        raise MapError("map.pixels", f"an array of shape {array.shape} is not a map; it needs height x width pixels")
+        said = f"an array of shape {array.shape} is not a map; it needs height x width pixels"
+        raise MapError("map.pixels", said, _COLOURS if array.ndim == 3 else None)
     metres = check_resolution(resolution)
     pose, warnings = check_origin(origin)
     nothing = Described(Path(image), metres, pose)
@@ -305,8 +320,8 @@ def _described(
 def _resolution_hint(place: Path, kind: str) -> str:
     """What helps where no resolution is stated: the YAML beside an image, or the flag."""
     beside = place.with_suffix(".yaml")
-    flag = "--resolution sets it, such as --resolution 0.05"
-    return f"did you mean {beside}? Else {flag}" if kind == "image" and beside.is_file() else flag
+    is_beside = kind == "image" and beside.is_file()
+    return f"did you mean {beside}? Else {SETS_RESOLUTION}" if is_beside else SETS_RESOLUTION
 
 
 def _refuse(path: Path, called: str, given: list[str]) -> None:

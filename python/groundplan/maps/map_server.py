@@ -30,6 +30,10 @@ KEYS = ("image", "resolution", "origin", "negate", "mode", "occupied_thresh", "f
 #: Metres a pixel, and metres from the frame's origin, beyond which a value is a slip and floats lose the centimetre.
 SMALLEST_RESOLUTION, LARGEST_RESOLUTION, FARTHEST_ORIGIN = 1e-6, 1e4, 1e9
 
+#: What helps where a file does not say it: the flag, and the keyword of `groundplan.read`.
+SETS_RESOLUTION = "--resolution sets it, such as --resolution 0.05; in Python resolution=0.05"
+SETS_ORIGIN = "--origin sets it, such as --origin 0 0 0; in Python origin=(0, 0, 0)"
+
 
 def read_yaml(path: Path) -> Described:
     """Read a map_server YAML.
@@ -72,13 +76,16 @@ def check_resolution(value: object, where: str = "") -> float:
             "map.resolution",
             f"{_in(where)}resolution {shown(value)} is not a number of metres a pixel between "
             f"{SMALLEST_RESOLUTION:g} and {LARGEST_RESOLUTION:g}",
-            "--resolution sets it, such as --resolution 0.05" if where else None,
+            SETS_RESOLUTION if where else None,
         )
     return metres
 
 
 def check_origin(value: object, where: str = "", *, exactly: int | None = None) -> tuple[Origin, list[MapWarning]]:
-    """Pose of the lower left corner, or ``map.origin``; a yaw that is not a number is 0, with a warning."""
+    """Pose of the lower left corner, or ``map.origin``; a yaw that is not a number is 0, with a warning.
+
+    One of more than a turn is taken, with a warning too.
+    """
     length = f"{exactly} numbers" if exactly else "2 or 3 numbers"
     parts = list(value) if isinstance(value, Sequence) and not isinstance(value, str | bytes) else None
     if hasattr(value, "tolist"):
@@ -97,6 +104,9 @@ def check_origin(value: object, where: str = "", *, exactly: int | None = None) 
     if math.isnan(yaw):
         said = f"the yaw of the origin{f' in {Path(where).name}' if where else ''} is nan: read as 0"
         return (x, y, 0.0), [MapWarning("yaw-nan", said)]
+    if abs(yaw) > 2 * math.pi:
+        said = f"the yaw of the origin{f' in {Path(where).name}' if where else ''} is {yaw:g} rad, more than a turn"
+        return (x, y, yaw), [MapWarning("yaw-degrees", f"{said}: if these are degrees, it is {math.radians(yaw):.6g}")]
     return (x, y, yaw), []
 
 

@@ -103,7 +103,7 @@ def pose(of: Any, where: str) -> tuple[Origin, list[MapWarning]]:
     x, y, z, w = (float(getattr(of.orientation, name)) for name in "xyzw")
     at = float(of.position.x), float(of.position.y)
     length = math.sqrt(x * x + y * y + z * z + w * w)
-    hint = "--origin X Y YAW sets the pose of the lower left corner"
+    hint = "--origin X Y YAW sets the pose of the lower left corner; in Python origin=(x, y, yaw)"
     if not math.isfinite(length):
         raise MapError(
             "map.origin", f"{where}: the origin's orientation {x:g}, {y:g}, {z:g}, {w:g} is no rotation", hint
