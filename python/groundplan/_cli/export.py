@@ -276,8 +276,6 @@ def listed() -> str:
         rows.append(("", f"NAME{form.suffix}{'; takes ' if told else ''}{', '.join(told)}"))
         if form.extra:
             lacking = ", ".join(missing(form.needs))
-            said = (
-                f"{lacking}, not installed: {installs(form.extra)}" if lacking else f"the extra {form.extra}, installed"
-            )
-            rows.append(("", f"needs {said}"))
+            there = f"{', '.join(form.needs)}, installed"
+            rows.append(("", f"needs {f'{lacking}, not installed: {installs(form.extra)}' if lacking else there}"))
     return "\n".join(terminal.columns(rows)) + "\n"

@@ -88,8 +88,9 @@ def prepare(forms: Iterable[Format], options: dict[str, Any]) -> None:
                 raise ParameterError("export.option", f"{form.name} has no option {name!r}", known)
         if form.map == "must" and options.get("map") is None:
             raise ParameterError("export.map", f"{form.name} needs the map's pixels", "give the map that was surveyed")
-        for module in form.needs:
-            needed(module, form.extra or form.name)
+        if form.extra:
+            for module in form.needs:
+                needed(module, form.extra)
 
 
 def target(path: str | os.PathLike[str], form: Format, survey: Survey) -> Path:
