@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 from zoo import Picture, walled
 
 import groundplan
@@ -220,3 +221,24 @@ def test_a_gate_as_wide_as_a_bay_in_the_wall_between_two_halls_is_a_way(width: i
     axes = [sorted(way["axis"], key=lambda end: end[1]) for way in survey.of_kind("corridor")]
     gates = sorted(low[0] for low, high in axes if low[1] < place < high[1])
     assert gates == pytest.approx([(gate + width / 2) * RESOLUTION for gate in (280, 630)], abs=0.2)
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("depth", [22, 26, 46])
+@pytest.mark.parametrize("degrees", [3.0, 17.0, 36.0])
+def test_a_bay_that_is_empty_is_no_way_where_posts_stand_within_what_is_seen_of_one(
+    degrees: float, depth: int, seed: int
+) -> None:
+    # Five rows of twelve bays of three pallets, of which a lidar sees the outlines; two of the bays are empty.
+    draws = np.random.default_rng(seed)
+    picture, rows = hall(5, depth, 12 * (BAY + 1))
+    for r, row in enumerate(rows):
+        fill(row, [n * (BAY + 1) for n in range(12)], [False] * 12)
+        for n, place in itertools.product(range(12), range(3)):
+            if (r, n) not in {(1, 3), (3, 8)}:
+                first = n * (BAY + 1) + 3 + 18 * place + draws.integers(2)
+                pallet = row[2 + draws.integers(2) : -2 - draws.integers(2), first : first + 15 + draws.integers(2)]
+                pallet[:] = 0
+                pallet[1:-1, 1:-1] = 205
+    turned = np.array(Image.fromarray(picture).rotate(degrees, expand=True, fillcolor=205))
+    assert ways_across(turned) == pytest.approx(HEADS, abs=0.4)

@@ -44,7 +44,7 @@ def hall(aisle: float, head: float, wall: float) -> zoo.Picture:
     plan = zoo.Canvas(1000, round((depth + 2.0 * wall + 14.0) / 0.05), zoo.FREE)
 
     def box(x: float, y: float, right: float, top: float, value: int) -> None:
-        plan.box(*(round(place / 0.05) for place in (x, y, right, top)), value)
+        plan.box(x / 0.05, y / 0.05, right / 0.05, top / 0.05, value)
 
     box(7.0 - wall, 7.0 - wall, 43.0 + wall, 7.0 + depth + wall, zoo.OCCUPIED)
     box(7.0, 7.0, 43.0, 7.0 + depth, zoo.FREE)

@@ -3,7 +3,8 @@
 
 use super::corridors::Strip;
 use super::passing::Place;
-use super::runs::{Run, length, outside};
+use super::runs::{Run, common, length, outside};
+use super::sections::BAY;
 use super::seldom;
 use super::widths::are_alike;
 use std::collections::BTreeSet;
@@ -42,6 +43,23 @@ pub fn have_empty_bays(place: &Place, strips: &[Strip], rows: &BTreeSet<usize>, 
         [sum[0] + own[0], sum[1] + own[1]]
     });
     open as f64 > OPEN * all as f64
+}
+
+/// True when posts that stand within what leads through some rows part it into pieces none of which is wider than a bay: it is
+/// an empty one and a place of the next.
+pub fn is_parted(place: &Place, strips: &[Strip], n: usize) -> bool {
+    let (own, cell) = (&place.passing[n], place.views[0].cell);
+    let Some(pitch) = place.pitch_of(own) else { return false };
+    let is_parted_in = |&row: &usize| {
+        let [from, to] = columns(place, &strips[n], row, 0.0);
+        let edge = (NEAR / cell).ceil() as usize;
+        let within = [(from + edge, to.saturating_sub(edge))];
+        let [one, other] = place.shelves(row).faces(place.views[0]);
+        let posts = common(&common(one, other), &within);
+        let pieces = outside(&[(from, to)], &posts);
+        !posts.is_empty() && pieces.into_iter().all(|(from, to)| (to - from) as f64 * cell <= BAY * pitch)
+    };
+    own.is_within && own.rows.iter().all(is_parted_in)
 }
 
 /// True when a row is open all across a strip, were that longer.

@@ -65,7 +65,7 @@ impl Shelves {
     }
 
     /// Where something stands at each face.
-    fn faces(&self, view: &Turned) -> &[Vec<Run>; 2] {
+    pub fn faces(&self, view: &Turned) -> &[Vec<Run>; 2] {
         self.faces.get_or_init(|| {
             self.row.across.map(|face| {
                 let stands = view.some_occupied(self.columns.clone(), face - FACE, face + FACE);
