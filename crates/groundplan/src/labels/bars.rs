@@ -3,6 +3,7 @@
 
 use super::Evidence;
 use super::corridors::Strip;
+use super::empties;
 use super::gates::walled;
 use super::lead::Lead;
 use super::look::Look;
@@ -176,12 +177,13 @@ impl<'a> Bars<'a> {
         Some(pieces)
     }
 
-    /// True when a strip leads over an empty bay of a row, by its posts and by the bars. What costs least is asked first.
+    /// True when a strip leads over an empty bay of a row, by its posts, and where they do not part it by the bars. What costs
+    /// least is asked first.
     fn has_bay(&self, n: usize, row: usize) -> bool {
+        let by_bars = || self.row(row).columns.posts_between(self.sides(n, row)) && self.is_bay(n, &[row]);
         self.lead(n, row).is_within()
             && self.passes_by(n, row)
-            && self.row(row).columns.posts_between(self.sides(n, row))
-            && self.is_bay(n, &[row])
+            && (empties::is_parted_in(self.place, self.strips, n, row) || by_bars())
     }
 
     /// True when bays are known, and what some rows have between the sides of a strip is one by the bars.
