@@ -223,22 +223,47 @@ def test_a_gate_as_wide_as_a_bay_in_the_wall_between_two_halls_is_a_way(width: i
     assert gates == pytest.approx([(gate + width / 2) * RESOLUTION for gate in (280, 630)], abs=0.2)
 
 
+def stack(row: Picture, starts: Iterable[int], empty: range, draws: np.random.Generator) -> None:
+    """Draws bays of three pallets between posts into a row, some places empty; of pallets a lidar sees the outlines."""
+    starts = list(starts)
+    fill(row, starts, [False] * len(starts))
+    for n in set(range(3 * len(starts))) - set(empty):
+        first = starts[n // 3] + 3 + 18 * (n % 3) + draws.integers(2)
+        pallet = row[2 + draws.integers(2) : -2 - draws.integers(2), first : first + 15 + draws.integers(2)]
+        pallet[:] = 0
+        pallet[1:-1, 1:-1] = 205
+
+
+def turned(picture: Picture, degrees: float) -> Picture:
+    return np.array(Image.fromarray(picture).rotate(degrees, expand=True, fillcolor=205))
+
+
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("depth", [22, 26, 46])
 @pytest.mark.parametrize("degrees", [3.0, 17.0, 36.0])
 def test_a_bay_that_is_empty_is_no_way_where_posts_stand_within_what_is_seen_of_one(
     degrees: float, depth: int, seed: int
 ) -> None:
-    # Five rows of twelve bays of three pallets, of which a lidar sees the outlines; two of the bays are empty.
     draws = np.random.default_rng(seed)
     picture, rows = hall(5, depth, 12 * (BAY + 1))
-    for r, row in enumerate(rows):
-        fill(row, [n * (BAY + 1) for n in range(12)], [False] * 12)
-        for n, place in itertools.product(range(12), range(3)):
-            if (r, n) not in {(1, 3), (3, 8)}:
-                first = n * (BAY + 1) + 3 + 18 * place + draws.integers(2)
-                pallet = row[2 + draws.integers(2) : -2 - draws.integers(2), first : first + 15 + draws.integers(2)]
-                pallet[:] = 0
-                pallet[1:-1, 1:-1] = 205
-    turned = np.array(Image.fromarray(picture).rotate(degrees, expand=True, fillcolor=205))
-    assert ways_across(turned) == pytest.approx(HEADS, abs=0.4)
+    none = range(0)
+    for row, empty in zip(rows, [none, range(9, 12), none, range(24, 27), none], strict=True):
+        stack(row, [n * (BAY + 1) for n in range(12)], empty, draws)
+    assert ways_across(turned(picture, degrees)) == pytest.approx(HEADS, abs=0.4)
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("way", [70, 80, 90])
+@pytest.mark.parametrize("degrees", [3.0, 17.0])
+def test_a_way_through_one_row_ends_before_an_empty_bay_of_the_next_in_line(
+    degrees: float, way: int, seed: int
+) -> None:
+    # After the fifth bay of the second row; the fifth bay of the third row, in line with it, is empty.
+    draws, none = np.random.default_rng(seed), range(0)
+    picture, rows = hall(5, 22, 12 * (BAY + 1) + way)
+    for r, (row, empty) in enumerate(zip(rows, [none, none, range(12, 15), range(27, 30), none], strict=True)):
+        stack(row, [n * (BAY + 1) + way * (r != 1 or n >= 5) for n in range(12)], empty, draws)
+    survey = groundplan.survey(turned(picture, degrees), resolution=RESOLUTION)
+    lengths = [np.linalg.norm(np.subtract(*c["axis"])) for c in survey.of_kind("corridor") if c["name"].startswith("C")]
+    assert min(lengths) == pytest.approx((AISLE + 22) * RESOLUTION, abs=0.3)
+    assert [junction["type"] for junction in survey.of_kind("junction")].count("X") == 0
