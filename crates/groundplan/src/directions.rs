@@ -35,7 +35,7 @@ const CONTRAST: f64 = 3.0;
 const LINED_UP: f64 = 0.5;
 /// Directions that are given closer than this are one, radians.
 const CLOSEST: f64 = 1e-6;
-/// While a candidate's angle is known to so many degrees, it may have this share of what will be found.
+/// While a candidate's angle is known to so many degrees, on a large map to fewer, it may have this share of what will be found.
 const HALF_KNOWN_DEG: f64 = 0.5;
 const HALF_KNOWN: f64 = 0.5;
 /// Directions are whole parts of a right angle, 2 to this power of them: what changes in a corner of a map as a rule

@@ -130,6 +130,7 @@ pub(crate) fn sharpest(
     let mut best = scan(start, |angle| some.roughly_at(angle));
     let mut step = STEP_DEG.to_radians() / 2.0;
     best.climb(step, |angle| some.roughly_at(angle));
+    // The search goes on from where it was: by finer steps a sample would lead it by its own pixels.
     let (mut known, mut finer) = (best, step);
     while finer / 2.0 * diagonal > KNOWN_PIXELS {
         finer /= 2.0;

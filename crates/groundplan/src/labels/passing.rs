@@ -59,7 +59,7 @@ impl<'a> Place<'a> {
 
 impl Place<'_> {
     /// True when the rows that something passes through are with those side by side with them open more often than by chance:
-    /// of two racks each, or hardly open elsewhere, or solid.
+    /// of two racks each, or hardly open elsewhere, or solid where it is as wide as no bay and nothing leads through them all.
     pub fn is_open_through(&self, strips: &[Strip], own: &Passing, width: f64) -> bool {
         let is_as_wide = |&aisle: &usize| width >= NARROWER * strips[self.aisles[aisle]].width();
         let may_be_led_through = |&row: &usize| {

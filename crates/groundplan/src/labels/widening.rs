@@ -6,7 +6,7 @@ use super::meeting::{Meeting, of_each};
 use super::shut::sign;
 use super::turned::Turned;
 
-/// What two ways meet lies no farther from there for the one than for the other, metres.
+/// The middle of what both ways meet may lie so far before the place where the wider one begins, metres.
 const SLACK: f64 = 0.25;
 
 /// The ways, each up to those in line with it that are wider and begin where it was not found, and what it meets there.

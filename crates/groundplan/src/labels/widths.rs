@@ -89,8 +89,8 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 /// of two racks that are open more often than by chance; where something does, what lies as empty bays do is one. What leads
 /// past rows' ends up to one that goes on farther is none, but where something leads through all and it is as wide as bays,
 /// nor where nothing of the rows beside reaches into it, or those before it end at bars and that one goes on past it. Nor
-/// those beside which, with no rack between, one leads through more rows. Bars decide where that leaves it open, and cut
-/// what leads on over bays.
+/// those beside which, with no rack between, one leads through more rows; nor those that posts part into bays in all their
+/// rows. Bars decide where that leaves it open, and cut what leads on over bays.
 pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let mut pieces: Vec<Vec<Strip>> = strips.iter().map(|strip| vec![strip.clone()]).collect();
