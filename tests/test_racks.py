@@ -164,6 +164,17 @@ def test_walls_that_are_drawn_solid_are_no_racks_be_the_racks_solid_too(wall: fl
     assert [len(survey.of_kind(kind)) for kind in ("region", "door")] == [2, 1]
 
 
+@pytest.mark.parametrize("depth", [0.6, 1.1])
+def test_a_rack_along_a_wall_goes_on_to_the_corners_behind_the_ways_that_cross_its_aisle(depth: float) -> None:
+    picture = hall(20.0, 6.6 + 2 * depth)
+    for y in (0.0, 6.6 + depth):
+        put(picture, 0.0, y, 20.0, depth, inside=0)
+    for row in range(3):
+        put(picture, 3.0, depth + 1.3 + 1.6 * row, 14.0, 0.8, inside=0)
+    lengths = sorted(abs(rack["axis"][0][0] - rack["axis"][1][0]) for rack in racks(picture))
+    assert lengths == pytest.approx([14.0] * 3 + [20.0] * 2, abs=0.3)
+
+
 def test_a_row_goes_on_where_one_of_its_aisles_was_not_driven() -> None:
     pytest.importorskip("shapely", reason="scores need shapely and scipy")
     made = simulate.warehouse(seed=114, width=60.0, depth=40.0, partial=0.5, lidar_range=12.0, **SMALL)

@@ -4,12 +4,12 @@
 use super::at_walls;
 use super::beside::placed;
 use super::blocks::{self, Standing, are_alike, beside, standing_near};
-use super::corridors::Strip;
+use super::corridors::{self, Strip};
 use super::racks;
 use super::rows::{Crossings, Row, SHORTEST, heaviest};
 use super::turned::Turned;
 use crate::bands::flat_map_each;
-use crate::ends::wider;
+use crate::ends::{shared, wider};
 use std::ops::Range;
 
 /// So many times its length a row counts whose two faces are seen.
@@ -54,11 +54,14 @@ pub fn find(
         known.clear();
     }
     let crossings = Crossings::new(views, strips, extents);
+    let half = corridors::widest(strips) / 2.0;
     let whole = |row: &Row| {
         let view = &views[row.direction];
         // A pillar that stands at its back is not of it.
         let row = trimmed(view, row, crossings.before_backs(row, 2.0 * RIM))?;
-        Some(if row.between.is_some() { followed(view, &crossings, &row) } else { row })
+        // One beside a single aisle goes on to the corner behind what crosses that, and no farther.
+        let most = if row.between.is_some() { f64::INFINITY } else { half };
+        Some(followed(view, &crossings, &row, most))
     };
     let found = flat_map_each(known.len(), threads, |n| whole(&known[n]));
     let mut blocks = blocks::find(views, &found, standing);
@@ -165,30 +168,34 @@ pub fn trimmed(view: &Turned, row: &Row, [low, high]: [f64; 2]) -> Option<Row> {
     (along[1] - along[0] >= SHORTEST).then(|| Row { along, ..row.clone() })
 }
 
-/// A row with what goes on beyond its ends, up to the corridors that cross it: of what a corridor on one side does not
-/// reach, one face is seen.
-fn followed(view: &Turned, crossings: &Crossings, row: &Row) -> Row {
+/// A row with what goes on beyond its ends, up to the corridors that cross it, and no farther than so much, metres: of what a
+/// corridor on one side does not reach, one face is seen.
+fn followed(view: &Turned, crossings: &Crossings, row: &Row, most: f64) -> Row {
     let whole = vec![(view.along(0), view.along(view.size[0]))];
     let middle = f64::midpoint(row.along[0], row.along[1]);
     let uncrossed = crossings.uncrossed(row.direction, row.across, whole);
     let Some(limits) = uncrossed.into_iter().find(|[from, to]| (*from..=*to).contains(&middle)) else {
         return row.clone();
     };
-    let goes_on = |from: f64| {
-        let columns = view.column(from)..view.column(from + STEP).max(view.column(from) + 1);
+    let limits = shared(limits, wider(row.along, most));
+    let goes_on = |from: f64, to: f64| {
+        let columns = view.column(from)..view.column(to).max(view.column(from) + 1);
         let mean = |low, high| view.mean_blocked(columns.clone(), low, high);
         let [low, high] = row.across;
         let before = mean(low - FRONT[1], low - FRONT[0]).min(mean(high + FRONT[0], high + FRONT[1]));
         before < 1.0 - FLOOR && mean(low, high) > TAKEN
     };
     let reach = |start: f64, sign: f64, limit: f64| {
+        let place = |n: u32| {
+            if sign > 0.0 { (start + f64::from(n) * STEP).min(limit) } else { (start - f64::from(n) * STEP).max(limit) }
+        };
         let (mut reach, mut missed) = (start, 0);
         for n in 1.. {
-            let to = start + sign * f64::from(n) * STEP;
-            if missed > OVER || sign * (limit - to) < 0.0 {
+            let [from, to] = [n - 1, n].map(place);
+            if missed > OVER || (to - from).abs() < view.cell {
                 break;
             }
-            if goes_on(if sign > 0.0 { to - STEP } else { to }) {
+            if goes_on(from.min(to), from.max(to)) {
                 (reach, missed) = (to, 0);
             } else {
                 missed += 1;
