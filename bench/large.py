@@ -21,6 +21,8 @@ from _maps import laid_out
 from _watched import watched
 from PIL import Image
 
+from groundplan._cli.arguments import count
+
 SIDE, LEAST_BAR = 20_000, 256 << 20
 
 #: Says how long reading took, and keeps still until it was looked at.
@@ -89,7 +91,7 @@ def measure(path: Path, modules: list[str], *, survey: bool) -> tuple[list[float
 def main() -> int:
     """Make the maps, measure, print the table, hold it to the bar."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("side", nargs="?", type=int, default=SIDE)
+    parser.add_argument("side", nargs="?", type=count, default=SIDE)
     parser.add_argument("--survey", action="store_true", help="survey each map too")
     words = parser.parse_args()
     survey, side = words.survey, words.side

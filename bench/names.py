@@ -13,6 +13,7 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from typing import Any
 
+from groundplan._cli.arguments import count
 from groundplan.evaluate import Case
 from groundplan.evaluate._suite import remade
 
@@ -46,7 +47,7 @@ def main() -> None:
     """Make the sites and their remakes, score them, print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("first", nargs="?", type=int, default=3000)
-    parser.add_argument("count", nargs="?", type=int, default=4)
+    parser.add_argument("count", nargs="?", type=count, default=4)
     words = parser.parse_args()
     sites = [(kind, words.first + 10 * n + k) for k, kind in enumerate(KINDS) for n in range(words.count)]
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:

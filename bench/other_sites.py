@@ -27,6 +27,7 @@ from _other_map import site
 from _other_plan import Measures
 
 import groundplan
+from groundplan._cli.arguments import count
 from groundplan.evaluate import score
 
 FIGURES = (
@@ -78,7 +79,7 @@ def main() -> None:
     """Make the sites, score them, print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("first", nargs="?", type=int, default=0)
-    parser.add_argument("count", nargs="?", type=int, default=110)
+    parser.add_argument("count", nargs="?", type=count, default=110)
     how = parser.add_mutually_exclusive_group()
     how.add_argument("--wide", action="store_true", help="every measure from a wider range")
     how.add_argument("--hard", action="store_true", help="several halls, wings, staggered rows, drift, half seen")

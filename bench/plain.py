@@ -24,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 import groundplan
+from groundplan._cli.arguments import count
 from groundplan.maps import FREE, OCCUPIED, UNKNOWN
 
 GREYS = {FREE: 254, OCCUPIED: 0, UNKNOWN: 205}
@@ -190,7 +191,7 @@ def main() -> None:
     """Survey all, print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("first", nargs="?", type=int, default=0)
-    parser.add_argument("count", nargs="?", type=int, default=400)
+    parser.add_argument("count", nargs="?", type=count, default=400)
     words = parser.parse_args()
     seeds = range(words.first, words.first + words.count)
     plans = {seed: (hall(seed), planned(hall(seed))) for seed in seeds}

@@ -24,6 +24,7 @@ import numpy.typing as npt
 from _watched import watched
 
 import groundplan
+from groundplan._cli.arguments import count
 from groundplan._tree import written
 from groundplan.simulate import office, warehouse
 
@@ -120,7 +121,7 @@ def on_four_workers(path: Path) -> tuple[float, float, bool]:
 def main() -> int:
     """Make the maps, measure, print the table, hold it to the bars."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("sizes", nargs="*", type=int, default=SIZES, help="megapixels")
+    parser.add_argument("sizes", nargs="*", type=count, default=SIZES, help="megapixels")
     parser.add_argument("--threads", type=int, default=0, help="as many as there are cores")
     parser.add_argument(
         "--write", action="store_true", help="survey each again and write survey.json, which takes more"

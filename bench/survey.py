@@ -24,6 +24,7 @@ from _maps import laid_out
 
 import groundplan as gp
 from groundplan import Map
+from groundplan._cli.arguments import count
 
 ROOT = Path(__file__).resolve().parents[1]
 BORMANN = ROOT.parent / "shared" / "maps" / "bormann"
@@ -114,7 +115,7 @@ def shell(folder: Path, runs: int) -> dict[str, float]:
 def main() -> int:
     """Measure, print the tables, hold them to the bars."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("runs", nargs="?", type=int, default=5)
+    parser.add_argument("runs", nargs="?", type=count, default=5)
     runs = parser.parse_args().runs
     try:
         import cv2

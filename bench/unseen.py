@@ -20,6 +20,7 @@ from typing import Any
 
 import groundplan
 from groundplan import ParameterError
+from groundplan._cli.arguments import count
 from groundplan.evaluate import score
 from groundplan.simulate import warehouse
 
@@ -121,7 +122,7 @@ def scores(options: Options) -> list[float] | None:
 def main() -> None:
     """Make the sites, score them, print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("sets", nargs="?", type=int, default=1)
+    parser.add_argument("sets", nargs="?", type=count, default=1)
     sets = parser.parse_args().sets
     print(f"{'sites':15}{'count':>6}{'F1':>8}{'typed':>8}{'worst':>8}{'recall':>8}{'precision':>11}")
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:

@@ -26,6 +26,7 @@ from _maps import laid_out
 
 import groundplan as gp
 from groundplan import Map
+from groundplan._cli.arguments import count
 
 SIDE, PATCH, RUNS = 8000, 512, 3
 BAR = 1 / 20
@@ -83,7 +84,7 @@ def on_four_workers(map: Map) -> tuple[float, float, bool]:
 def main() -> int:
     """Measure, print, hold to the bar."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("side", nargs="?", type=int, default=SIDE)
+    parser.add_argument("side", nargs="?", type=count, default=SIDE)
     side = parser.parse_args().side
     map, missed = laid_out(side), False
     print(f"{platform.machine()}, {os.cpu_count()} cores; {side} x {side} pixels, {PATCH} x {PATCH} of them changed")

@@ -4,6 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "SAME_DIRECTION",
     "UNSURE",
     "Labels",
     "Locator",
@@ -43,6 +44,7 @@ _Frame: TypeAlias = tuple[int, int, float, tuple[float, float, float]]
 _Points: TypeAlias = npt.NDArray[np.float64]
 _Ragged: TypeAlias = tuple[_Points, list[int]]
 
+SAME_DIRECTION: float
 UNSURE: float
 
 @final

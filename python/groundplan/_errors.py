@@ -35,6 +35,15 @@ _HINTS = {
 }
 
 
+def shown(value: object) -> str:
+    """A value in a sentence, cut if it is long."""
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of thousands of digits
+        return "of too many digits"
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
 class GroundplanError(Exception):
     """Base of all errors of Groundplan.
 

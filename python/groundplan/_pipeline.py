@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 from collections.abc import Sequence
 from functools import cache
@@ -12,12 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from groundplan import _core
-from groundplan._errors import MapError
+from groundplan._errors import MapError, shown
 from groundplan._memory import give_back
 from groundplan._results import (
     Adjacency,
     Directions,
-    Floats,
     Lines,
     MapInfo,
     Occupancy,
@@ -28,7 +26,6 @@ from groundplan._results import (
 )
 from groundplan._tree import LABELS, Table, strange_reading
 from groundplan.maps import Map, MapWarning, from_array, read
-from groundplan.maps.map_server import shown
 from groundplan.parameters import named, resolve
 from groundplan.stages import cores, layout, made, run, taken
 from groundplan.survey import Survey
@@ -151,18 +148,15 @@ def surveyed(
         "occupancy": Occupancy,
         "walls": Walls,
     }
-    settings = resolve(parameters)
-    given = "directions" in own or settings["directions.angles_deg"] is not None
-    near = _near(found["directions"]["angles"], settings["directions.separation_deg"]) if given else []
     survey = Survey(
         map=MapInfo(map.image, map.width, map.height, map.resolution, map.origin),
-        parameters=settings,
+        parameters=resolve(parameters),
         radiograms=[made(Radiogram, arrays) for arrays in found["radiograms"]],
         subdivision=NOT_YET,
         adjacency=NOT_YET,
         labels=NOT_YET,
         patterns=found["patterns"],
-        warnings=[*map.warnings, *(MapWarning(code, message) for code, message in found["warnings"]), *near],
+        warnings=[*map.warnings, *(MapWarning(code, message) for code, message in found["warnings"])],
         **{name: made(kind, found[name]) for name, kind in stages.items()},
     )
     # For its routes and its updates, and no part of what it is.
@@ -189,18 +183,6 @@ def surveyed(
     for name in survey.__dict__["_later"]:
         del survey.__dict__[name]
     return survey
-
-
-def _near(angles: Floats, separation: float) -> list[MapWarning]:
-    """A warning of the nearest two directions that were given, where they would be one had they been found."""
-    pairs = itertools.combinations(np.degrees(angles).tolist(), 2)
-    apart = [(abs((a - b + 90) % 180 - 90), a, b) for a, b in pairs]
-    least, a, b = min(apart, default=(90.0, 0.0, 0.0))
-    if round(least, 6) >= separation:
-        return []
-    said = f"the directions {a:.6g} and {b:.6g} deg that were given are {least:.6g} deg apart"
-    kept = f"directions.separation_deg = {separation:g} makes one of two that are found so near, but both are kept"
-    return [MapWarning("near-directions", f"{said}: {kept}")]
 
 
 def _is_array(value: object) -> bool:

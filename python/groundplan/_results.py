@@ -14,8 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from groundplan import _core
-from groundplan._errors import ParameterError
-from groundplan.maps.map_server import shown
+from groundplan._errors import ParameterError, shown
 
 Floats = npt.NDArray[np.float64]
 Ids = npt.NDArray[np.uint32]
@@ -34,8 +33,6 @@ KINDS = ("corridor", "junction", "rack", "region", "door", "pillar")
 Label = dict[str, Any]
 #: Labels of this confidence or less are shown and spoken of as unsure.
 UNSURE = _core.UNSURE
-#: Directions that are given nearer than this are one, radians.
-ONE_DIRECTION = 1e-6
 
 
 class Stage:
@@ -113,7 +110,7 @@ class Directions(Stage):
                 said = f"angles[{k}] is {angle:g}, and no angle in radians is beyond a turn"
                 raise ParameterError("stage.input", said, "Directions.of(np.radians(angles)) takes degrees")
         for k, n in itertools.combinations(range(len(own)), 2):
-            if abs((own[k] - own[n] + np.pi / 2) % np.pi - np.pi / 2) < ONE_DIRECTION:
+            if abs((own[k] - own[n] + np.pi / 2) % np.pi - np.pi / 2) < _core.SAME_DIRECTION:
                 said = f"angles[{k}] and angles[{n}], {own[k]:g} and {own[n]:g}, are one direction"
                 raise ParameterError("stage.input", said, "each is given once; half a turn further it is the same")
         return cls((own + np.pi / 2) % np.pi - np.pi / 2, np.ones(len(own)), np.zeros(0), 1.0)

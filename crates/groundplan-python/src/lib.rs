@@ -20,6 +20,8 @@ mod _core {
     #[pymodule_export]
     use crate::queries::{Locator, Ways};
     #[pymodule_export]
+    const SAME_DIRECTION: f64 = directions::SAME_DIRECTION;
+    #[pymodule_export]
     const UNSURE: f64 = groundplan::UNSURE;
     use crate::{convert, labels::from_patterns, layout::Layout, named::Named, parameters};
     use groundplan::{Given, subdivision::Subdivision, sums::FaceSums, walls};

@@ -34,7 +34,7 @@ const CONTRAST: f64 = 3.0;
 /// share of what lies along the new one. What the weaker one took stays with it: hardly anything lined up there.
 const LINED_UP: f64 = 0.5;
 /// Directions that are given closer than this are one, radians.
-const CLOSEST: f64 = 1e-6;
+pub const SAME_DIRECTION: f64 = 1e-6;
 /// While a candidate's angle is known to so many degrees, on a large map to fewer, it may have this share of what will be found.
 const HALF_KNOWN_DEG: f64 = 0.5;
 const HALF_KNOWN: f64 = 0.5;
@@ -91,7 +91,7 @@ fn measure(
 ) -> Vec<Candidate> {
     let mut found: Vec<Candidate> = Vec::new();
     for angle in angles.iter().map(|a| frame.angle_to_grid(a.to_radians())) {
-        if found.iter().all(|other| angle_between(other.angle, angle) > CLOSEST) {
+        if found.iter().all(|other| angle_between(other.angle, angle) > SAME_DIRECTION) {
             let lines = aligned(frame, rest, angle, threads);
             take(rest, angle, &lines, parameters);
             found.push(Candidate { angle, metres: lines.metres, quiet: NONE_QUIET });

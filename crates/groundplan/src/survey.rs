@@ -6,7 +6,7 @@ use crate::bands::{Awaited, Later, side_by_side, worth};
 use crate::coverage::Covered;
 use crate::directions::{Directions, find_directions};
 use crate::gradients::{Gradients, find_gradients};
-use crate::grid::{Frame, Grid};
+use crate::grid::{Frame, Grid, angle_between};
 use crate::labels::{
     Division, Evidence, Glance, Ground, Label, Memory, Pattern, Recall, Scene, Sight, Sketch, find_confidence,
     find_labels, find_labels_in, find_patterns, find_uprights,
@@ -267,6 +267,23 @@ fn undecided(labels: &[Label], confidence: &[f64]) -> Option<Warning> {
     })
 }
 
+/// What is said of the nearest two directions where one would be made of two found so near: they were given.
+fn near_directions(angles: &[f64], separation: f64) -> Option<String> {
+    let pairs = angles.iter().enumerate().flat_map(|(n, &one)| angles[n + 1..].iter().map(move |&other| [one, other]));
+    let (least, pair) =
+        pairs.map(|[one, other]| (angle_between(one, other), [one, other])).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let degrees = |angle: f64| (angle.to_degrees() * PARTS).round() / PARTS;
+    let (least, [one, other]) = (degrees(least), pair.map(degrees));
+    (least < separation).then(|| {
+        format!(
+            "the directions {one} and {other} deg that were given are {least} deg apart: \
+             directions.separation_deg = {separation} makes one of two that are found so near, but both are kept"
+        )
+    })
+}
+
+/// Angles that are given are told and compared to so many parts of a degree.
+const PARTS: f64 = 1e4;
 /// Fewer edge pixels than this are no structure.
 const FEW_EDGE_PIXELS: usize = 100;
 /// Larger pixels, and smaller maps, are rather a slip in the resolution than a site, metres.
@@ -318,6 +335,9 @@ fn find_warnings(survey: &Survey, frame: &Frame, edges: usize, parameters: &Para
         && directions.angles.len() < count
     {
         warn("few-directions", format!("{count} directions were asked for and {} found", directions.angles.len()));
+    }
+    if let Some(message) = near_directions(&directions.angles, parameters.directions_separation_deg) {
+        warn("near-directions", message);
     }
     if !directions.angles.is_empty() && lines.is_empty() {
         warn("no-lines", "no line stands out of the radiograms".to_owned());

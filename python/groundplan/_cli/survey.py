@@ -143,14 +143,14 @@ def settings(arguments: argparse.Namespace) -> dict[str, Any]:
 def _hold(own: dict[str, Any], parser: Parser, where: str = "") -> None:
     """Hold settings to the table; of a name that a flag has and no parameter, the hint is the flag."""
     from groundplan._errors import ParameterError
-    from groundplan.parameters import resolve
+    from groundplan.parameters import resolve, table
 
     try:
         resolve(own)
     except ParameterError as fault:
         hint = fault.hint
         if fault.code == "parameter.unknown":
-            known = resolve({})
+            known = {row.name for row in table()}
             name = next(name for name in own if name not in known)
             flag = parser.flag_of(name)
             if flag is None and not str(hint).startswith("did you mean"):  # [map] and below it resolution

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from groundplan._errors import MapError
+from groundplan._errors import MapError, shown
 from groundplan.maps import _greys as greys
 from groundplan.maps._dialects import (
     DIALECTS,
@@ -35,7 +35,7 @@ from groundplan.maps._warnings import (
     unknown_as_occupied,
     walls_as_unknown,
 )
-from groundplan.maps.map_server import check_mode, check_threshold, number, shown
+from groundplan.maps.map_server import check_mode, check_threshold, number
 
 Unknown = None | str | int | Sequence[int]
 Interpreted = tuple[Bytes, npt.NDArray[np.int8], Bytes, list[MapWarning]]

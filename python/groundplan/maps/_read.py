@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from groundplan._errors import MapError
+from groundplan._errors import MapError, shown
 from groundplan.maps._distant import Distant, distant
 from groundplan.maps._interpret import Unknown, interpret, meaning_of, weigh
 from groundplan.maps._map import Map
@@ -26,7 +26,6 @@ from groundplan.maps.map_server import (
     check_resolution,
     meant,
     read_yaml,
-    shown,
 )
 
 #: What each kind of file is called, and what can be given for it alone.

@@ -10,12 +10,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundplan._errors import GroundplanError, MapError
+from groundplan._errors import GroundplanError, MapError, shown
 from groundplan._extras import needed
 from groundplan.maps._map import MapWarning
 from groundplan.maps._open import METADATA, look
 from groundplan.maps._source import Described, Progress
-from groundplan.maps.map_server import number, shown
+from groundplan.maps.map_server import number
 from groundplan.maps.occupancy_grid import GRID, UPDATE, UPDATES, Grid
 
 if TYPE_CHECKING:

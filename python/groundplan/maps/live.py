@@ -11,12 +11,11 @@ import time
 from types import SimpleNamespace
 from typing import Any, Self
 
-from groundplan._errors import GroundplanError, MapError
+from groundplan._errors import GroundplanError, MapError, shown
 from groundplan._extras import needed
 from groundplan.maps._interpret import meaning_of, weigh
 from groundplan.maps._map import Map
 from groundplan.maps._source import Occupancies
-from groundplan.maps.map_server import shown
 from groundplan.maps.occupancy_grid import UPDATES, Grid
 
 #: How long is waited at a time, in seconds: between two waits Ctrl-C is heard.

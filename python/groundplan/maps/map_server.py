@@ -12,7 +12,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import cast
 
-from groundplan._errors import MapError
+from groundplan._errors import MapError, shown
 from groundplan.maps._dialects import FREE_THRESH, MODES, OCCUPIED_THRESH, Mode
 from groundplan.maps._map import MapWarning
 from groundplan.maps._open import open_file
@@ -143,15 +143,6 @@ def number(value: object) -> float | None:
         return float(str(value).strip().lower().replace(".nan", "nan").replace(".inf", "inf"))
     except ValueError:
         return None
-
-
-def shown(value: object) -> str:
-    """A value in a sentence, cut if it is long."""
-    try:
-        text = repr(value)
-    except ValueError:  # an integer of thousands of digits
-        return "of too many digits"
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _mapping(path: Path) -> dict[str, object]:

@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from groundplan._errors import GroundplanError, MapError
+from groundplan._errors import GroundplanError, MapError, shown
 from groundplan._extras import needed
 from groundplan.maps._map import MapWarning
 from groundplan.maps._open import look
 from groundplan.maps._source import Bytes, Described, Occupancies, Progress
-from groundplan.maps.map_server import number, shown
+from groundplan.maps.map_server import number
 
 Floats = npt.NDArray[np.float64]
 

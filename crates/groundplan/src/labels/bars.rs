@@ -3,7 +3,6 @@
 
 use super::Evidence;
 use super::corridors::Strip;
-use super::empties;
 use super::gates::walled;
 use super::lead::Lead;
 use super::look::Look;
@@ -147,6 +146,18 @@ impl<'a> Bars<'a> {
         !self.place.passing[n].next.iter().all(|&row| self.row(row).columns.is_bare(self.sides(n, row)))
     }
 
+    /// True when posts that stand within what one of the strips passes through part it in each of the rows, between their ends:
+    /// it is an empty bay and a part of the next.
+    pub fn are_parted(&self, n: usize) -> bool {
+        let own = &self.place.passing[n];
+        own.is_within && own.rows.iter().all(|&row| self.is_parted_in(n, row))
+    }
+
+    /// True when posts part a strip in one row, were it so long, into pieces none of which is wider than a bay.
+    fn is_parted_in(&self, n: usize, row: usize) -> bool {
+        self.row(row).columns.is_parted(self.sides(n, row))
+    }
+
     /// One of the strips without the rows in which posts stand between its sides and bars beside it are missed: it is in
     /// pieces then, and where the next row is such a one it stops. Nothing where it stays as it is.
     pub fn cut(&self, n: usize) -> Option<Vec<Strip>> {
@@ -181,9 +192,7 @@ impl<'a> Bars<'a> {
     /// least is asked first.
     fn has_bay(&self, n: usize, row: usize) -> bool {
         let by_bars = || self.row(row).columns.posts_between(self.sides(n, row)) && self.is_bay(n, &[row]);
-        self.lead(n, row).is_within()
-            && self.passes_by(n, row)
-            && (empties::is_parted_in(self.place, self.strips, n, row) || by_bars())
+        self.lead(n, row).is_within() && self.passes_by(n, row) && (self.is_parted_in(n, row) || by_bars())
     }
 
     /// True when bays are known, and what some rows have between the sides of a strip is one by the bars.

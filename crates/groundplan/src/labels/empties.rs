@@ -3,8 +3,7 @@
 
 use super::corridors::Strip;
 use super::passing::Place;
-use super::runs::{Run, common, length, outside};
-use super::sections::BAY;
+use super::runs::{Run, length, outside};
 use super::seldom;
 use super::widths::are_alike;
 use std::collections::BTreeSet;
@@ -43,26 +42,6 @@ pub fn have_empty_bays(place: &Place, strips: &[Strip], rows: &BTreeSet<usize>, 
         [sum[0] + own[0], sum[1] + own[1]]
     });
     open as f64 > OPEN * all as f64
-}
-
-/// True when posts that stand within what leads through some rows part it in each of them: it is an empty bay and a part of the
-/// next.
-pub fn is_parted(place: &Place, strips: &[Strip], n: usize) -> bool {
-    let own = &place.passing[n];
-    own.is_within && own.rows.iter().all(|&row| is_parted_in(place, strips, n, row))
-}
-
-/// True when posts part a strip in one row, were it so long, into pieces none of which is wider than a bay.
-pub fn is_parted_in(place: &Place, strips: &[Strip], n: usize, row: usize) -> bool {
-    let Some(pitch) = place.pitch_of(&place.passing[n]) else { return false };
-    let cell = place.views[0].cell;
-    let [from, to] = columns(place, &strips[n], row, 0.0);
-    let edge = (NEAR / cell).ceil() as usize;
-    let within = [(from + edge, to.saturating_sub(edge))];
-    let [one, other] = place.shelves(row).faces(place.views[0]);
-    let posts = common(&common(one, other), &within);
-    let pieces = outside(&[(from, to)], &posts);
-    !posts.is_empty() && pieces.into_iter().all(|(from, to)| (to - from) as f64 * cell <= BAY * pitch)
 }
 
 /// True when a row is open all across a strip, were that longer.

@@ -6,7 +6,7 @@ use super::family;
 use super::gates::{crossing, leading_across};
 use super::rows::{self, Row};
 use super::sections::is_as_bays;
-use super::seldom;
+use super::seldom::{self, Rest};
 use super::shelves::Shelves;
 use super::turned::Turned;
 use super::whole;
@@ -72,7 +72,11 @@ impl Place<'_> {
         let may_be_bay = || {
             self.pitch_of(own).is_some_and(|pitch| is_as_bays(width, pitch)) || !self.lead_through_all(&part).is_empty()
         };
-        own.is_within && seldom::are_full_elsewhere(self.views[0], rows(), width, may_be_bay)
+        let is_full = || {
+            let rest = Rest::new(self.views[0], rows(), width);
+            rest.is_full() || rest.is_solid() && !may_be_bay()
+        };
+        own.is_within && is_full()
             || own.rows.iter().all(may_be_led_through) && seldom::are_open(self.views[0], rows(), width)
     }
 

@@ -12,6 +12,7 @@ use super::step::{BAYS, Section};
 use super::turned::Turned;
 use crate::ends::{overlap, wider};
 use crate::grid::Frame;
+use std::mem;
 
 /// A way is so wide, metres.
 pub const WIDTH: (f64, f64) = (1.6, 8.0);
@@ -225,6 +226,20 @@ impl<'a> Columns<'a> {
             (to - from) as f64 * self.view.cell <= POST && stands(0) && stands(1)
         };
         first < last && runs(&self.stops[first..last], true).into_iter().any(is_post)
+    }
+
+    /// True when what stands between two sides on both faces parts the row there into pieces none of which is wider than a
+    /// bay: an empty one lies there and a part of the next.
+    pub fn is_parted(&self, sides: [f64; 2]) -> bool {
+        let (first, last) = self.inner(sides);
+        let stands = |n: &usize| self.faces[*n] == [true; 2];
+        let mut from = sides[0];
+        // What ends at a post is known to a column.
+        let mut is_piece = |to: f64, next: f64| self.is_as_a_bay([mem::replace(&mut from, next) + self.view.cell, to]);
+        let mut posts = (first..last).filter(stands).map(|n| self.place(n)).peekable();
+        posts.peek().is_some()
+            && posts.all(|post| is_piece(post, post + self.view.cell))
+            && is_piece(sides[1], sides[1])
     }
 
     /// True when next to nothing of the row is not free between two sides, but for what stands at these.

@@ -56,33 +56,45 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Shelves>, widt
     is_more_than_chance(open, half_open as f64, places)
 }
 
-/// True when rows side by side are each open at as many places of a width, as where a way leads through each, and so little
-/// else of their halves is that as many would hardly be by chance: no shelves are empty there. Nor are they where rows of two
-/// racks stand solid, however many places each is open at, if what is so wide may be no bay.
-pub fn are_full_elsewhere<'a>(
-    view: &Turned,
-    rows: impl Iterator<Item = &'a Shelves>,
+/// Rows side by side but for where they are open at a width.
+pub struct Rest<'a> {
+    view: &'a Turned,
+    rows: Vec<Elsewhere<'a>>,
+    /// Columns of a width, of both the rows' halves and of those at which a half is open.
     width: f64,
-    may_be_bay: impl Fn() -> bool,
-) -> bool {
-    let [least, most] = [AS_WIDE * width / view.cell, width / AS_WIDE / view.cell + ENDS as f64];
-    let as_wide = |length: usize| (least..=most).contains(&(length as f64));
-    let all: Vec<Elsewhere> = rows.map(|shelves| shelves.elsewhere(view, as_wide)).collect();
-    let free = all.iter().map(|row| row.free(SHELF / view.cell)).sum::<usize>() as f64;
-    let faces = 2.0 * all.iter().map(Elsewhere::columns).sum::<usize>() as f64;
-    let stands = || all.iter().map(|row| row.stands(view)).sum::<usize>() as f64;
-    let open: usize = all.iter().map(|row| row.open).sum();
-    let are_shut = faces > 0.0 && free <= SOLID.1 * faces && all.iter().all(|row| is_double(&row.shelves.row));
-    if open >= SEVERAL && are_shut && stands() >= SOLID.0 * faces && !may_be_bay() {
-        return true;
+    halves: f64,
+    free: f64,
+}
+
+impl<'a> Rest<'a> {
+    pub fn new(view: &'a Turned, rows: impl Iterator<Item = &'a Shelves>, width: f64) -> Self {
+        let [least, most] = [AS_WIDE * width / view.cell, width / AS_WIDE / view.cell + ENDS as f64];
+        let as_wide = |length: usize| (least..=most).contains(&(length as f64));
+        let rows: Vec<Elsewhere> = rows.map(|shelves| shelves.elsewhere(view, as_wide)).collect();
+        let free = rows.iter().map(|row| row.free(SHELF / view.cell)).sum::<usize>() as f64;
+        let halves = 2.0 * rows.iter().map(Elsewhere::columns).sum::<usize>() as f64;
+        Self { view, rows, width: width / view.cell, halves, free }
     }
-    if all.iter().any(|row| row.open != all[0].open) {
-        return false;
+
+    /// True when the rows are of two racks and stand solid but for several places, however many each has.
+    pub fn is_solid(&self) -> bool {
+        let stands = || self.rows.iter().map(|row| row.stands(self.view)).sum::<usize>() as f64;
+        self.halves > 0.0
+            && self.rows.iter().map(|row| row.open).sum::<usize>() >= SEVERAL
+            && self.free <= SOLID.1 * self.halves
+            && self.rows.iter().all(|row| is_double(&row.shelves.row))
+            && stands() >= SOLID.0 * self.halves
     }
-    // Half a place more is open and one more is there, as so few tell little.
-    let own = width / view.cell;
-    let share = (free + 0.5 * own) / (faces + own);
-    chance(open, faces / 2.0 / own * share * share) < UNLIKELY_IN_FULL
+
+    /// True when each row has as many places, as where a way leads through each, and so little else of their halves is open
+    /// that as many would hardly be by chance: no shelves are empty there.
+    pub fn is_full(&self) -> bool {
+        // Half a place more is open and one more is there, as so few tell little.
+        let share = (self.free + 0.5 * self.width) / (self.halves + self.width);
+        let by_chance = self.halves / 2.0 / self.width * share * share;
+        let open: usize = self.rows.iter().map(|row| row.open).sum();
+        self.rows.iter().all(|row| row.open == self.rows[0].open) && chance(open, by_chance) < UNLIKELY_IN_FULL
+    }
 }
 
 /// True when both racks would hardly be empty at so many of all places by chance, where one of them is at so many more.

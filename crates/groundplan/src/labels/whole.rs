@@ -7,6 +7,7 @@ use super::blocks::{self, Standing, are_alike, beside, standing_near};
 use super::corridors::{self, Strip};
 use super::racks;
 use super::rows::{Crossings, Row, SHORTEST, heaviest};
+use super::shut::sign;
 use super::turned::Turned;
 use crate::bands::flat_map_each;
 use crate::ends::{shared, wider};
@@ -34,7 +35,8 @@ const NEAR: f64 = 0.15;
 const INSET: f64 = 0.3;
 const UNKNOWN: f64 = 0.965;
 const HIDDEN: f64 = 0.4;
-/// A wall goes on beyond a row's ends for so far, metres.
+/// Of a wall that is drawn solid so much is occupied, and of what goes on beyond its ends for so far, metres, is not free.
+const SOLID: f64 = 0.95;
 const ON: f64 = 0.5;
 
 /// The racks of a place; the rows between its corridors are known, and the racks that stand on legs.
@@ -136,11 +138,11 @@ fn is_solid(view: &Turned, row: &Row) -> bool {
     let [first, end] = row.along.map(|u| view.column(u));
     let beyond = (ON / view.cell).ceil() as usize;
     let [low, high] = wider(row.across, -view.cell);
-    let goes_on = |columns: Range<usize>| view.mean_blocked(columns, low, high) >= CLOSED;
+    let goes_on = |columns: Range<usize>| view.mean_blocked(columns, low, high) >= SOLID;
     let occupied = || view.some_occupied(first..end, low, high).iter().sum::<f64>() / (end - first).max(1) as f64;
     goes_on(first.saturating_sub(beyond)..first)
         && goes_on(end..(end + beyond).min(view.size[0]))
-        && occupied() >= CLOSED
+        && occupied() >= SOLID
 }
 
 fn is_shell(view: &Turned, row: &Row) -> bool {
@@ -185,11 +187,10 @@ fn followed(view: &Turned, crossings: &Crossings, row: &Row, most: f64) -> Row {
         let before = mean(low - FRONT[1], low - FRONT[0]).min(mean(high + FRONT[0], high + FRONT[1]));
         before < 1.0 - FLOOR && mean(low, high) > TAKEN
     };
-    let reach = |start: f64, sign: f64, limit: f64| {
-        let place = |n: u32| {
-            if sign > 0.0 { (start + f64::from(n) * STEP).min(limit) } else { (start - f64::from(n) * STEP).max(limit) }
-        };
-        let (mut reach, mut missed) = (start, 0);
+    let reach = |side: usize| {
+        let out = sign(side);
+        let place = |n: u32| out * (out * row.along[side] + f64::from(n) * STEP).min(out * limits[side]);
+        let (mut reach, mut missed) = (row.along[side], 0);
         for n in 1.. {
             let [from, to] = [n - 1, n].map(place);
             if missed > OVER || (to - from).abs() < view.cell {
@@ -203,7 +204,7 @@ fn followed(view: &Turned, crossings: &Crossings, row: &Row, most: f64) -> Row {
         }
         reach
     };
-    let along = [reach(row.along[0], -1.0, limits[0]), reach(row.along[1], 1.0, limits[1])];
+    let along = [0, 1].map(reach);
     trimmed(view, &Row { along, ..row.clone() }, row.across).unwrap_or_else(|| row.clone())
 }
 

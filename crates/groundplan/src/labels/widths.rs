@@ -147,7 +147,7 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
                     !*is_told_within && view.pitch.is_some() && own.rows.iter().all(is_double) && bars.are_beside(n)
                 }
             };
-            stays[n] &= (!is_some || is_told()) && !empties::is_parted(&place, strips, n);
+            stays[n] &= (!is_some || is_told()) && !bars.are_parted(n);
             if let Some(cut) = stays[n].then(|| bars.cut(n)).flatten() {
                 pieces[n] = cut;
             }
