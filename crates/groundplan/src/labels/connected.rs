@@ -72,7 +72,7 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
                 0 | 1 if rows::is_within_row(&strips, &placed, n) => false,
                 0 if is_shut(n) && sided::is_within_outline(&views[strips[n].direction], &strips, &placed, n) => false,
                 0 if is_shut(n) => {
-                    let is_sided = || sided::is_sided(&views[strips[n].direction], &strips[n]);
+                    let is_sided = || sided::is_sided_but_for_bays(&views[strips[n].direction], &strips[n]);
                     let is_at_row = || sided::is_at_row(&views[strips[n].direction], &strips, &placed, n);
                     strips[n].length() >= SHUT * strips[n].width()
                         && (is_one_of_many(Beyond::Near) || is_sided() || is_at_row())

@@ -15,6 +15,8 @@ use crate::ends::{overlap, shared, wider};
 const SIDED: f64 = 0.6;
 /// It does so from so far within the side to so far beyond, in widths.
 const SIDE: (f64, f64) = (0.1, 0.25);
+/// Empty bays are no longer than this, in pitches: these may be of their halves.
+const BAYS: f64 = 2.0;
 /// An outline is closed where something of it stands so near, metres, but for gaps through which no robot comes.
 const OUTLINE: f64 = 0.15;
 /// So far beyond an end of it, metres, is floor where less than that share is not free.
@@ -28,6 +30,18 @@ const FACE: f64 = 0.3;
 /// True when something that is not free stands along both sides of a strip.
 pub fn is_sided(view: &Turned, strip: &Strip) -> bool {
     are_sided(view, strip, strip.along).into_iter().all(|is_sided| is_sided)
+}
+
+/// True when that is so but for empty bays, where it is known from post to post.
+pub fn is_sided_but_for_bays(view: &Turned, strip: &Strip) -> bool {
+    let bays = view.pitch.map_or(0, |pitch| (BAYS * pitch / view.cell) as usize);
+    let columns = view.columns(strip.along);
+    sides(strip).into_iter().all(|[low, high]| {
+        let held = view.blocked_where(columns.clone(), low, high, |share| share > 0.0);
+        let mut held: Vec<bool> = (0..columns.len()).map(|n| held.get(n)).collect();
+        close(&mut held, bays);
+        held.into_iter().filter(|held| *held).count() as f64 >= SIDED * columns.len() as f64
+    })
 }
 
 /// True when something does along one of them between two places, and before the nearest strip on the other side something
@@ -48,12 +62,17 @@ pub fn is_sided_by_bays(view: &Turned, strip: &Strip, along: [f64; 2], beside: [
 /// Along which of a strip's sides something that is not free stands between two places.
 pub fn are_sided(view: &Turned, strip: &Strip, along: [f64; 2]) -> [bool; 2] {
     let columns = view.column(along[0])..view.column(along[1]);
-    let [low, high] = strip.across;
-    let (within, beyond) = (SIDE.0 * strip.width(), SIDE.1 * strip.width());
-    [[low - beyond, low + within], [high - within, high + beyond]].map(|[low, high]| {
+    sides(strip).map(|[low, high]| {
         let held = view.blocked_where(columns.clone(), low, high, |share| share > 0.0);
         held.count(0..columns.len()) as f64 >= SIDED * columns.len() as f64
     })
+}
+
+/// From where to where across what stands at a strip's sides does so.
+fn sides(strip: &Strip) -> [[f64; 2]; 2] {
+    let [low, high] = strip.across;
+    let (within, beyond) = (SIDE.0 * strip.width(), SIDE.1 * strip.width());
+    [[low - beyond, low + within], [high - within, high + beyond]]
 }
 
 /// True when a strip that is shut at both its ends is so all along its sides too, is no wider than a row is deep, ends
