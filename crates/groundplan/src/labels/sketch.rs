@@ -237,13 +237,31 @@ impl Plan {
         if !cut.is_empty() && !plan.find_racks(views, on_legs, &standing, threads).is_empty() {
             plan = plan.with(views, &cut, least, threads);
         }
-        let Gates { ways, as_bays } = gates::find(evidence, look, views, &plan.strips, &plan.rows);
-        let across = [plan.strips.clone(), ways].concat();
+        let (mut plan, mut across) = plan.with_others(evidence, look, views);
+        plan.racks = plan.find_racks(views, on_legs, &standing, threads);
+        let faced = faced::whole(views, &plan.strips, &plan.racks);
+        if faced != plan.strips {
+            // As long as they are, they may show where others lead.
+            (plan, across) = Self::new(views, faced, threads).with_others(evidence, look, views);
+            plan.racks = plan.find_racks(views, on_legs, &standing, threads);
+        }
+        let narrow = narrowed::past(views, &plan.strips, &plan.racks, &plan.reached(views), least);
+        if narrow != plan.strips {
+            plan = Self::new(views, narrow, threads);
+            plan.racks = plan.find_racks(views, on_legs, &standing, threads);
+        }
+        (plan, across)
+    }
+
+    /// With the ways through and past its rows, and those that are known by them; and the ways that had been there and those
+    /// through rows before some of them were left out.
+    fn with_others(self, evidence: &Evidence, look: &Look, views: &[Turned]) -> (Self, Vec<Strip>) {
+        let threads = evidence.threads;
+        let Gates { ways, as_bays } = gates::find(evidence, look, views, &self.strips, &self.rows);
+        let across = [self.strips.clone(), ways].concat();
         let alike = [widths::alike(evidence, look, views, &across), as_bays].concat();
         let carried = carried::on(evidence, look, views, joined::apart(views, alike));
-        if carried != plan.strips {
-            plan = Self::new(views, carried, threads);
-        }
+        let mut plan = if carried == self.strips { self } else { Self::new(views, carried, threads) };
         if let Some(more) = heads::with(evidence, look, views, &plan.strips, &plan.rows) {
             plan = Self::new(views, more, threads);
         }
@@ -255,17 +273,6 @@ impl Plan {
         }
         if let Some(more) = bends::with(views, &plan.strips, &plan.meetings, &plan.rows, evidence.parameters) {
             plan = Self::new(views, more, threads);
-        }
-        plan.racks = plan.find_racks(views, on_legs, &standing, threads);
-        let faced = faced::whole(views, &plan.strips, &plan.racks);
-        if faced != plan.strips {
-            plan = Self::new(views, faced, threads);
-            plan.racks = plan.find_racks(views, on_legs, &standing, threads);
-        }
-        let narrow = narrowed::past(views, &plan.strips, &plan.racks, &plan.reached(views), least);
-        if narrow != plan.strips {
-            plan = Self::new(views, narrow, threads);
-            plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }
         (plan, across)
     }
