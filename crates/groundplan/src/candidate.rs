@@ -20,7 +20,7 @@ pub const WING: (f64, f64) = (1.0, 0.03);
 
 /// Drift bends halls, so that the two directions of one are square to so many degrees only: then a weak one needs this share of
 /// the other.
-const BENT: (f64, f64) = (1.0, 0.1);
+const BENT: (f64, f64) = (2.0, 0.1);
 
 /// A direction that may be one.
 #[derive(Clone, Copy)]
@@ -113,6 +113,7 @@ mod tests {
     fn drift_bends_the_ends_of_a_wing_too_and_then_they_are_longer() {
         let strong = [candidate(46.4, 540.0), candidate(-43.7, 245.0), candidate(-70.05, 103.0)];
         let count = |degrees: f64, metres: f64| seconds(&[candidate(degrees, metres)], &strong).len();
-        assert_eq!([count(20.0, 5.0), count(20.3, 71.0), count(20.3, 5.0), count(21.2, 71.0)], [1, 1, 0, 0]);
+        assert_eq!([count(20.0, 5.0), count(20.3, 5.0), count(22.2, 71.0)], [1, 0, 0]);
+        assert_eq!([count(20.3, 71.0), count(21.5, 71.0)], [1; 2]);
     }
 }
