@@ -16,7 +16,7 @@ use crate::grid::{Grid, State};
 use std::collections::BTreeMap;
 
 /// From frame to frame, metres, and in depths at least.
-const PITCH: [f64; 2] = [0.9, 4.5];
+const PITCH: [f64; 2] = [0.8, 4.5];
 const OBLONG: f64 = 0.7;
 /// Of the gaps from frame to frame the one that so many times as many are no less than is the pitch: frames may be missing.
 const QUARTER: usize = 4;
