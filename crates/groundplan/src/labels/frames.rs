@@ -13,6 +13,10 @@ const NEARER: f64 = 0.8;
 pub const AISLE: f64 = 6.0;
 /// Frames back to back are no further apart, metres.
 pub const BACK: f64 = 0.45;
+/// Legs back to back that are seen as one thing are no wider than this together, and the middle of each lies so far within
+/// its end, metres.
+const TWO: f64 = BACK + 0.3;
+const HALF: f64 = 0.05;
 /// Legs stand so near to where they would without the map's error, metres.
 pub const NEAR: f64 = 0.15;
 
@@ -44,9 +48,17 @@ pub fn frames(uprights: &[Upright], [cos, sin]: [f64; 2]) -> (Vec<Frame>, Legs) 
         let [x, y] = upright.at;
         let (u, v) = (x * cos + y * sin, y * cos - x * sin);
         let [along, across] = upright.extents([cos, sin]);
-        if along <= LEG && across <= LEG {
+        if along > LEG {
+            continue;
+        }
+        if across <= LEG {
             all.push([u, v]);
-        } else if along <= LEG && holds(DEPTH, across) {
+            continue;
+        }
+        if across <= TWO {
+            all.extend([-1.0, 1.0].map(|side| [u, v + side * (across / 2.0 - HALF)]));
+        }
+        if holds(DEPTH, across) {
             frames.push(Frame { at: u, faces: [v - across / 2.0, v + across / 2.0] });
         }
     }
@@ -122,6 +134,37 @@ impl Legs {
             Some((one, far)) if is_frame(one) => ends(far),
             Some((one, far)) if one <= BACK => gap(far).is_some_and(|(two, far)| is_frame(two) && ends(far)),
             _ => ends(leg),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::uprights;
+    use super::*;
+    use crate::grid;
+    use crate::pixels::Pixels;
+
+    /// The depths of the frames of racks along x, by what stands in pixels of 5 cm, from one corner to another.
+    fn depths(things: &[[u32; 4]]) -> Vec<f64> {
+        let frame = grid::Frame::new(200, 200, 0.05, [0.0; 3]);
+        let columns =
+            |[left, low, right, high]: [u32; 4]| (low..=high).flat_map(move |y| (left..=right).map(move |x| [x, y]));
+        let mut pixels: Vec<[u32; 2]> = things.iter().flat_map(|&thing| columns(thing)).collect();
+        pixels.sort_unstable_by_key(|&[x, y]| [y, x]);
+        let (frames, _) = frames(&uprights::find(&frame, &Pixels::from_iter(pixels)), [1.0, 0.0]);
+        frames.iter().map(Frame::depth).collect()
+    }
+
+    #[test]
+    fn legs_back_to_back_that_are_seen_as_one_thing_make_two_frames() {
+        // Legs at the faces, and in the middle two of 10 cm side by side, apart and as one.
+        let apart = [[50, 20, 51, 21], [50, 38, 51, 39], [50, 42, 51, 43], [50, 60, 51, 61]];
+        let one = [[50, 20, 51, 21], [50, 38, 51, 43], [50, 60, 51, 61]];
+        for legs in [&apart[..], &one] {
+            let depths = depths(legs);
+            assert_eq!(depths.len(), 2, "{depths:?}");
+            assert!(depths.iter().all(|depth| (depth - 0.9).abs() < 0.11), "{depths:?}");
         }
     }
 }
