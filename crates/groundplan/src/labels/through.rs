@@ -37,14 +37,11 @@ pub const BETWEEN_CELLS: f64 = 0.1;
 const AT_WALL: f64 = 0.6;
 /// What is likelier than this is no way, whatever else is one.
 const LIKELY: f64 = 0.3;
-/// What crosses all rows of a place is a way when it is as wide as other ways and less likely than this by chance; when
-/// none is known; when none is between the rows' ends and it is not much narrower than the aisles beside, more so where racks
-/// end on both its sides; and when it has another width than those. Past the ends of all rows there are ways in most halls, and
-/// LIKELY is enough.
+/// What crosses all rows of a place is a way when it is as wide as other ways and less likely than this by chance; when none
+/// is known, or none between the rows' ends and it is not much narrower than the aisles beside; and when it has another width
+/// than those. Past the ends of all rows there are ways in most halls, and LIKELY is enough.
 const ALIKE: f64 = 0.05;
-const FIRST: f64 = 0.01;
-const PAST: f64 = 0.003;
-const CLOSED: f64 = 0.02;
+const FIRST: f64 = 0.02;
 const OTHER: f64 = 0.005;
 /// The same where there are more rows at that place, as of those that lie side by side there are many, and where it has
 /// another width than those and a bay's.
@@ -255,10 +252,7 @@ impl<'a> Through<'a> {
             (false, _) => SOME,
             (true, _) if self.is_past_ends(common) => LIKELY,
             (true, true) => ALIKE,
-            (true, false) if known.is_empty() => FIRST,
-            (true, false) if !is_told_within(other.direction) && self.is_as_aisles(common) => {
-                if self.is_closed(common) { CLOSED } else { PAST }
-            }
+            (true, false) if known.is_empty() || !is_told_within(other.direction) && self.is_as_aisles(common) => FIRST,
             // Goods hardly narrow an empty bay of each row alike; racks end so.
             (true, false) if self.rows[common.rows[0]].is_as_bays(common.ends) && !self.is_closed(common) => SOME,
             (true, false) => OTHER,
