@@ -191,8 +191,10 @@ impl<'a> Bars<'a> {
     /// True when a strip leads over an empty bay of a row, by its posts, and where they do not part it by the bars. What costs
     /// least is asked first.
     fn has_bay(&self, n: usize, row: usize) -> bool {
+        // What would part one that leads through all rows of a place was left in it.
+        let is_parted = || !self.place.passing[n].is_whole() && self.is_parted_in(n, row);
         let by_bars = || self.row(row).columns.posts_between(self.sides(n, row)) && self.is_bay(n, &[row]);
-        self.lead(n, row).is_within() && self.passes_by(n, row) && (self.is_parted_in(n, row) || by_bars())
+        self.lead(n, row).is_within() && self.passes_by(n, row) && (is_parted() || by_bars())
     }
 
     /// True when bays are known, and what some rows have between the sides of a strip is one by the bars.
