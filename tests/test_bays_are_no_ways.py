@@ -267,3 +267,22 @@ def test_a_way_through_one_row_ends_before_an_empty_bay_of_the_next_in_line(
     lengths = [np.linalg.norm(np.subtract(*c["axis"])) for c in survey.of_kind("corridor") if c["name"].startswith("C")]
     assert min(lengths) == pytest.approx((AISLE + 22) * RESOLUTION, abs=0.3)
     assert [junction["type"] for junction in survey.of_kind("junction")].count("X") == 0
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("rows", [5, 6])
+def test_ways_as_wide_as_bays_lead_through_every_other_row_in_line_and_through_the_rest(rows: int, seed: int) -> None:
+    # Rows of two racks back to back, of nine bays for four pallets, of which every third is missing.
+    draws = np.random.default_rng(seed)
+    bay, count, gaps = 72, 9, (2, 6)
+    picture, parts = hall(rows, 40, count * bay + 2)
+    for n, row in enumerate(parts):
+        row[:] = 254
+        for k in range(count):
+            for slot, rack in itertools.product(range(4), (0, 1)):
+                if k != gaps[n % 2] and draws.random() > 1 / 3:
+                    x = k * bay + 4 + 17 * slot
+                    row[2 + 19 * rack : 19 + 19 * rack, x : x + 15] = 0
+        for post in range(count + 1):
+            row[[0, 1, -2, -1], post * bay : post * bay + 2] = 0
+    assert len(ways_across(picture)) == 2 + rows

@@ -26,7 +26,9 @@ NOTHING = {"rack": 0, "corridor": 0, "junction": 0, "pillar": 0}
 
 
 @pytest.mark.parametrize("degrees", [0.0, 17.0])
-@pytest.mark.parametrize(("depth", "pitch", "aisle"), [(1.1, 2.7, 3.0), (1.3, 3.6, 2.0), (0.6, 1.5, 1.5)])
+@pytest.mark.parametrize(
+    ("depth", "pitch", "aisle"), [(1.1, 2.7, 3.0), (1.3, 3.6, 2.0), (0.6, 1.5, 1.5), (0.6, 0.9, 1.5)]
+)
 def test_legs_in_pairs_at_one_pitch_are_racks_with_aisles_between_them(
     depth: float, pitch: float, aisle: float, degrees: float
 ) -> None:
@@ -81,6 +83,21 @@ def test_racks_back_to_back_are_one() -> None:
     survey = groundplan.survey(hall(29.6, 19.2, boxes()), resolution=RESOLUTION)
     assert [rack["width"] for rack in survey.of_kind("rack")] == pytest.approx([2.4] * 3, abs=0.15)
     assert len(survey.of_kind("corridor")) == 6
+
+
+@pytest.mark.parametrize("degrees", [0.0, 25.0])
+def test_racks_back_to_back_are_one_though_the_legs_between_them_are_seen_as_single_things(degrees: float) -> None:
+    def boxes() -> Iterator[Box]:
+        for n in range(4):
+            low = 2.0 + 3.9 * n
+            yield from legs(3.0, low, 12, 0.95, 0.9)
+            yield from legs(3.0, low + 0.95, 12, 0.95, 0.9)
+            for leg in range(13):  # What lies between two legs was hit as well.
+                yield 3.0 + 0.9 * leg, low + 0.8, 3.1 + 0.9 * leg, low + 1.1
+
+    survey = groundplan.survey(hall(16.9, 17.6, boxes(), degrees), resolution=RESOLUTION)
+    assert [rack["width"] for rack in survey.of_kind("rack")] == pytest.approx([1.9] * 4, abs=0.15)
+    assert len(survey.of_kind("corridor")) == 7
 
 
 def test_a_way_across_racks_on_legs_is_none_of_their_bays() -> None:

@@ -42,7 +42,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let placed = placed(views, strips.iter().map(Strip::place));
     let widest = corridors::widest(strips);
     let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, &placed, widest, row)).collect();
-    let through = Through::new(views, seen(evidence, look, views, strips, rows, &reaching));
+    let mut through = Through::new(views, strips, seen(evidence, look, views, strips, rows, &reaching));
     // What leads past rows at a wall, or through a row that is a wall itself from one wall to another, though it is as wide as
     // bays; it tells nothing of how wide other ways are.
     let mut at_walls = Vec::new();
@@ -60,7 +60,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let mut as_bays: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, through.rows())).collect();
     // What leads through each row is counted in whole rows: a way that is known cuts the one that it leads through.
     let whole = uncut(views, rows);
-    let whole = whole.as_ref().map(|rows| Through::new(views, seen(evidence, look, views, strips, rows, rows)));
+    let whole = whole.as_ref().map(|rows| Through::new(views, strips, seen(evidence, look, views, strips, rows, rows)));
     let in_each_row = whole.as_ref().unwrap_or(&through).in_each_row();
     for (gate, is_as_a_bay) in through.at_walls(strips, &placed) {
         let found = if is_as_a_bay { &mut at_walls } else { &mut gates };
@@ -81,7 +81,10 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     // Where a direction has no ways at all nothing speaks against one.
     let is_any_known = |direction: usize| known.iter().any(|way| way.direction == direction);
     let within = LazyCell::new(|| passing::are_within(views, &places));
-    let through = through.find(strips, &mut sure, |direction| within[direction]);
+    let several = through.find(&mut sure, |direction| within[direction]);
+    let mut turns = through.turns();
+    let more: Vec<Strip> = whole.iter().flat_map(Through::turns).collect();
+    turns.extend(more.into_iter().filter(|way| !turns.iter().any(|known| is_in(way, known))).collect::<Vec<_>>());
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
     let all = LazyCell::new(|| [&known[..], &doubtful].concat());
     let all_places = LazyCell::new(|| Place::of_each(views, &all));
@@ -101,10 +104,11 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     };
     let as_wide = between_racks.into_iter().filter(|(gate, pitch, is_alone)| is_as_wide(gate, *pitch, *is_alone));
     gates.extend(as_wide.map(|(gate, ..)| gate));
-    gates.retain(|gate| !through.iter().any(|way| is_in(gate, way)));
-    gates.extend(through);
+    gates.retain(|gate| !several.iter().chain(&turns).any(|way| is_in(gate, way)));
+    gates.extend(several);
     gates.extend(at_walls.into_iter().chain(thin::gates(views, strips)));
     let ways = in_line(gates);
+    as_bays.extend(turns);
     as_bays.extend(as_wide_as_others(views, strips, &ways, in_each_row));
     as_bays.retain(|gate| !ways.iter().any(|way| is_in(gate, way)));
     Gates { ways, as_bays: in_line(as_bays) }
@@ -180,7 +184,7 @@ pub fn through_several(
     let open = |row: &Seen| row.columns.open().iter().map(|[from, to]| to - from).sum::<f64>();
     let taken: Vec<&Row> = seen.iter().filter(|row| open(row) < OPEN * row.row.length()).map(|row| row.row).collect();
     let mut sure = Widths::of(views, strips.iter().filter(|strip| !strip.bays));
-    let mut ways = in_line(Through::new(views, seen).find(strips, &mut sure, |_| false));
+    let mut ways = in_line(Through::new(views, strips, seen).find(&mut sure, |_| false));
     let leads_through = |way: &Strip, row: &Row| {
         let middle = f64::midpoint(row.across[0], row.across[1]);
         let [s, u] = views[row.direction].crossing(&views[way.direction], middle, way.middle());

@@ -81,6 +81,7 @@ mod sweep;
 mod thin;
 mod through;
 mod turned;
+mod turns;
 mod uprights;
 mod whole;
 mod widening;

@@ -235,7 +235,8 @@ impl<'a> Columns<'a> {
         let stands = |n: &usize| self.faces[*n] == [true; 2];
         let mut from = sides[0];
         // What ends at a post is known to half a column to either side.
-        let mut is_piece = |to: f64, next: f64| self.is_as_a_bay([mem::replace(&mut from, next) + self.view.cell / 2.0, to]);
+        let mut is_piece =
+            |to: f64, next: f64| self.is_as_a_bay([mem::replace(&mut from, next) + self.view.cell / 2.0, to]);
         let mut posts = (first..last).filter(stands).map(|n| self.place(n)).peekable();
         posts.peek().is_some()
             && posts.all(|post| is_piece(post, post + self.view.cell))

@@ -10,6 +10,7 @@ use super::family;
 use super::sections::WIDTH;
 use super::seen::Seen;
 use super::turned::Turned;
+use super::turns;
 use super::whole;
 use super::widths::{Widths, are_alike};
 use crate::ends::{overlap, shared};
@@ -17,16 +18,16 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// What is open in some rows, one beside another.
 #[derive(Clone)]
-struct Common {
+pub struct Common {
     /// From where to where, across the direction that crosses the rows.
-    ends: [f64; 2],
-    rows: Vec<usize>,
+    pub ends: [f64; 2],
+    pub rows: Vec<usize>,
     /// How likely it is that all of them are open there.
-    chance: f64,
+    pub chance: f64,
 }
 
 impl Common {
-    fn width(&self) -> f64 {
+    pub fn width(&self) -> f64 {
         self.ends[1] - self.ends[0]
     }
 }
@@ -62,12 +63,12 @@ pub struct Through<'a> {
     below: Vec<Vec<usize>>,
     /// Which of the rows are walls between halls.
     walls: Vec<bool>,
-    /// For each row, which of its ends are at a wall, when that is known.
+    /// For each row, which of its ends are at a wall.
     walled: Vec<[bool; 2]>,
 }
 
 impl<'a> Through<'a> {
-    pub fn new(views: &[Turned], rows: Vec<Seen<'a>>) -> Self {
+    pub fn new(views: &[Turned], strips: &[Strip], rows: Vec<Seen<'a>>) -> Self {
         // A corridor is of one direction, and so are the rows beside it.
         let mut beside: BTreeMap<usize, [Vec<usize>; 2]> = BTreeMap::new();
         for (n, Seen { between: [below, above], .. }) in rows.iter().enumerate() {
@@ -77,11 +78,39 @@ impl<'a> Through<'a> {
         let next = |side: usize| rows.iter().map(|row| beside[&row.between[side]][side].clone()).collect();
         let (below, above) = (next(0), next(1));
         let walls = whole::are_between_halls(views, &rows.iter().map(|seen| seen.row).collect::<Vec<_>>());
-        Self { open: Openings::new(views.len(), &rows), rows, above, below, walls, walled: Vec::new() }
+        let walled = rows.iter().map(|seen| [0, 1].map(|side| seen.is_at_wall(strips, side))).collect();
+        Self { open: Openings::new(views.len(), &rows), rows, above, below, walls, walled }
     }
 
     pub fn rows(&self) -> &[Seen<'a>] {
         &self.rows
+    }
+
+    /// Where a row is open, across the direction that crosses it.
+    pub fn open(&self, row: usize) -> &[[f64; 2]] {
+        self.open.of(row)
+    }
+
+    /// How likely it is that some rows are open at one place.
+    pub fn chance(&self, rows: &[usize], ends: [f64; 2]) -> f64 {
+        self.open.chance(rows, ends)
+    }
+
+    /// The rows next to one, above and below it.
+    pub fn next_to(&self, row: usize) -> impl Iterator<Item = usize> {
+        self.above[row].iter().chain(&self.below[row]).copied()
+    }
+
+    /// The rows above or below those that are next to one there, that reach up to a place, and walls are none.
+    pub fn two_on(&self, row: usize, is_up: bool, place: f64) -> impl Iterator<Item = usize> {
+        let beside = if is_up { &self.above } else { &self.below };
+        let holds = move |&n: &usize| !self.walls[n] && self.rows[n].holds(place);
+        beside[row].iter().copied().filter(holds).flat_map(|n| beside[n].iter().copied()).filter(holds)
+    }
+
+    /// True when it leads through its rows between their ends, and no wall runs along one there.
+    pub fn is_within(&self, common: &Common) -> bool {
+        !self.is_past_ends(common) && !self.is_walled(common)
     }
 
     /// True when a row is a wall between halls.
@@ -91,9 +120,8 @@ impl<'a> Through<'a> {
 
     /// The ways, where those of known widths are, each through one row after another; `known_within` tells of each direction
     /// whether some of those lead through rows between their ends.
-    pub fn find(mut self, strips: &[Strip], widths: &mut [Widths], known_within: impl Fn(usize) -> bool) -> Vec<Strip> {
+    pub fn find(&mut self, widths: &mut [Widths], known_within: impl Fn(usize) -> bool) -> Vec<Strip> {
         let mut found_within = vec![false; widths.len()];
-        self.walled = self.rows.iter().map(|seen| [0, 1].map(|side| seen.is_at_wall(strips, side))).collect();
         let mut left = Vec::new();
         for n in 0..self.rows.len() {
             for &ends in self.open.of(n) {
@@ -118,10 +146,7 @@ impl<'a> Through<'a> {
                 }
             }
             if ways.len() == known {
-                return ways
-                    .iter()
-                    .flat_map(|way| way.rows.iter().map(|&n| self.rows[n].way(self.rows[n].stretch(way.ends))))
-                    .collect();
+                return self.strips(&ways);
             }
             for way in &ways[known..] {
                 let first = &self.rows[way.rows[0]];
@@ -139,6 +164,17 @@ impl<'a> Through<'a> {
                 common.chance = self.open.chance(&common.rows, common.ends);
             }
         }
+    }
+
+    /// Those that lead through rows in turns, of what is left when the others are found.
+    pub fn turns(&self) -> Vec<Strip> {
+        self.strips(&turns::find(self))
+    }
+
+    /// Each way through one row after another.
+    fn strips(&self, ways: &[Common]) -> Vec<Strip> {
+        let strip = |way: &Common, n: usize| self.rows[n].way(self.rows[n].stretch(way.ends));
+        ways.iter().flat_map(|way| way.rows.iter().map(move |&n| strip(way, n))).collect()
     }
 
     /// The ways between the last of a row and a wall that ends it and the corridors beside it, and whether each is as wide as
