@@ -4,6 +4,7 @@
 //! width, or the row is closed on both its sides.
 
 use super::closing::{Closing, LinesAcross};
+use super::frames::{LEG, NEAR};
 use super::look::Look;
 use super::rows::{Row, SHORTEST};
 use super::runs::runs;
@@ -32,6 +33,8 @@ pub const TAKEN: f64 = 0.5;
 pub const LEFT: f64 = 0.25;
 /// A way is free but for this share, metre for metre: one walks round what was left in it.
 const CLUTTER: f64 = 0.2;
+/// Two posts across from each other, be they off by the map's error, take no more along a row, metres.
+const PAIR: f64 = LEG + NEAR;
 /// Posts are no longer along a row, metres.
 const POST: f64 = 0.6;
 /// Of a row from which nothing reaches into a way so much is not free there.
@@ -221,11 +224,16 @@ impl<'a> Columns<'a> {
     /// True when posts stand between two sides on both faces, with next to nothing beside them: goods are longer.
     pub fn posts_between(&self, sides: [f64; 2]) -> bool {
         let (first, last) = self.inner(sides);
-        let is_post = |(from, to): (usize, usize)| {
-            let stands = |face: usize| self.faces[first + from..first + to].iter().any(|faces| faces[face]);
-            (to - from) as f64 * self.view.cell <= POST && stands(0) && stands(1)
-        };
-        first < last && runs(&self.stops[first..last], true).into_iter().any(is_post)
+        first < last
+            && runs(&self.stops[first..last], true)
+                .into_iter()
+                .any(|(from, to)| self.are_posts(first + from, first + to))
+    }
+
+    /// True when what stands in some columns does so on both faces, and is no longer than posts.
+    fn are_posts(&self, from: usize, to: usize) -> bool {
+        let stands = |face: usize| self.faces[from..to].iter().any(|faces| faces[face]);
+        (to - from) as f64 * self.view.cell <= POST && stands(0) && stands(1)
     }
 
     /// True when what stands between two sides on both faces parts the row there into pieces none of which is wider than a
@@ -306,9 +314,14 @@ impl<'a> Columns<'a> {
     /// other, or as long as a rack and drawn by its outline: goods on the floor.
     fn pass_by(&mut self) {
         for (from, to) in runs(&self.stops, true) {
-            let both = self.faces[from..to].iter().filter(|faces| **faces == [true; 2]).count();
-            let is_long = (to - from) as f64 * self.view.cell >= SHORTEST;
-            let is_frame = both as f64 >= if is_long { OUTLINED } else { 1.0 } * (to - from) as f64;
+            let both = || self.faces[from..to].iter().filter(|faces| **faces == [true; 2]).count() as f64;
+            let length = (to - from) as f64;
+            let is_long = length * self.view.cell >= SHORTEST;
+            let is_frame = if is_long {
+                both() >= OUTLINED * length
+            } else {
+                length * self.view.cell <= PAIR && self.are_posts(from, to) || both() >= length
+            };
             let is_within = from > 0 && to < self.stops.len();
             if is_within && !is_frame && (from..=to).all(|n| self.closing(n) == Closing::Open) {
                 self.stops[from..to].fill(false);
