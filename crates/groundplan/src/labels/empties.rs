@@ -2,7 +2,7 @@
 //! the rows is open.
 
 use super::corridors::Strip;
-use super::passing::Place;
+use super::passing::{Passing, Place};
 use super::runs::{Run, length, outside};
 use super::seldom;
 use super::widths::are_alike;
@@ -42,6 +42,11 @@ pub fn have_empty_bays(place: &Place, strips: &[Strip], rows: &BTreeSet<usize>, 
         [sum[0] + own[0], sum[1] + own[1]]
     });
     open as f64 > OPEN * all as f64
+}
+
+/// True when the rows of the part of the place that something passes through have empty bays as wide.
+pub fn are_about(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> bool {
+    place.first_of(own).is_some_and(|first| have_empty_bays(place, strips, &place.rows_with(first), width))
 }
 
 /// True when a row is open all across a strip, were that longer.

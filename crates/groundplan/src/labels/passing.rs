@@ -61,11 +61,7 @@ impl Place<'_> {
     /// True when the rows that something passes through are with those side by side with them open more often than by chance:
     /// of two racks each, or hardly open elsewhere, or solid where it is as wide as no bay and nothing leads through them all.
     pub fn is_open_through(&self, strips: &[Strip], own: &Passing, width: f64) -> bool {
-        let is_as_wide = |&aisle: &usize| width >= NARROWER * strips[self.aisles[aisle]].width();
-        let may_be_led_through = |&row: &usize| {
-            let (row, between) = &self.rows[row];
-            seldom::is_double(row) && between.iter().all(is_as_wide)
-        };
+        let is_double = |&row: &usize| seldom::is_double(&self.rows[row].0);
         let Some(first) = self.first_of(own) else { return false };
         let part = self.rows_with(first);
         let rows = || part.iter().map(|&row| self.shelves(row));
@@ -77,7 +73,15 @@ impl Place<'_> {
             rest.is_full() || rest.is_solid() && !may_be_bay()
         };
         own.is_within && is_full()
-            || own.rows.iter().all(may_be_led_through) && seldom::are_open(self.views[0], rows(), width)
+            || own.rows.iter().all(is_double)
+                && self.is_as_aisles(strips, own, width)
+                && seldom::are_open(self.views[0], rows(), width)
+    }
+
+    /// True when a width is not much less than that of the aisles beside the rows that something passes through.
+    pub fn is_as_aisles(&self, strips: &[Strip], own: &Passing, width: f64) -> bool {
+        let aisles = own.rows.iter().flat_map(|&row| self.rows[row].1);
+        aisles.into_iter().all(|aisle| width >= NARROWER * strips[self.aisles[aisle]].width())
     }
 
     /// What leads through all rows of a part of the place, between their ends.

@@ -317,16 +317,23 @@ impl<'a> Columns<'a> {
             let both = || self.faces[from..to].iter().filter(|faces| **faces == [true; 2]).count() as f64;
             let length = (to - from) as f64;
             let is_long = length * self.view.cell >= SHORTEST;
-            let is_frame = if is_long {
-                both() >= OUTLINED * length
-            } else {
-                length * self.view.cell <= PAIR && self.are_posts(from, to) || both() >= length
-            };
+            let is_frame =
+                if is_long { both() >= OUTLINED * length } else { self.is_pair(from, to) || both() >= length };
             let is_within = from > 0 && to < self.stops.len();
             if is_within && !is_frame && (from..=to).all(|n| self.closing(n) == Closing::Open) {
                 self.stops[from..to].fill(false);
             }
         }
+    }
+
+    /// True when two posts stand in some columns, one on each face, be they off by the map's error, and not two goods of which
+    /// each reaches beyond these on a side of its own.
+    fn is_pair(&self, from: usize, to: usize) -> bool {
+        let beyond = |n: Option<usize>| n.and_then(|n| self.faces.get(n)).copied().unwrap_or_default();
+        let [before, after] = [from.checked_sub(2), Some(to + 1)].map(beyond);
+        let are_two =
+            before != after && before != [false; 2] && after != [false; 2] && before != [true; 2] && after != [true; 2];
+        (to - from) as f64 * self.view.cell <= PAIR && self.are_posts(from, to) && !are_two
     }
 
     /// True when something closes all of the row's depth at a place along.

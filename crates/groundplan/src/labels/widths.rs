@@ -9,7 +9,7 @@ use super::empties;
 use super::look::Look;
 use super::passing::{Passing, Place};
 use super::rows::SHORTEST;
-use super::sections::is_as_bays;
+use super::sections::{WIDTH, is_as_bays};
 use super::seldom;
 use super::turned::Turned;
 use crate::ends::{shared, sorted, wider};
@@ -24,6 +24,8 @@ const REST: f64 = 6.0;
 const APART: f64 = 0.1;
 /// A row that goes on farther than others does so for this much, metres.
 const FARTHER: f64 = 1.0;
+/// Chance does not open so many rows in line where hardly a place of them is.
+const IN_LINE: usize = 3;
 /// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
 const WALL: f64 = 0.9;
 const TAKEN: f64 = 0.2;
@@ -132,7 +134,16 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
                 Some(pitch) => !is_as_bays(width, pitch) || is_in_every_row() && bars.stand_beside_no_bays(n),
                 None => alone.is_longer_than_bays(own, width) || is_in_every_row(),
             };
-            let is_no_bay = || !*is_told_within && (is_way_of_its_row() || place.is_open_through(strips, own, width));
+            // Through several rows in line, of which nothing else is as wide open, leads a way.
+            let is_in_line = || {
+                own.is_within
+                    && own.racks >= IN_LINE
+                    && width >= WIDTH.0
+                    && !empties::are_about(&place, strips, own, width)
+            };
+            let is_no_bay = || {
+                is_in_line() || !*is_told_within && (is_way_of_its_row() || place.is_open_through(strips, own, width))
+            };
             let may_lie = || pitch().is_none() || may_be_bay();
             let is_as_bays_lie = || may_lie() && alone.is_as_bays_lie(&place, strips, own, width);
             let is_empty = || *is_told_within && may_be_bay() && empties::is_empty(&place, strips, n);
