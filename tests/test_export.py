@@ -311,7 +311,7 @@ def test_the_list_names_what_is_not_installed_and_the_command_that_installs_it(
     [
         (["--to", "cvs"], "did you mean csv?"),
         (["--to", "csv", "--graph", "faces"], "--graph says nothing"),
-        ([], "--to FORMAT are needed"),
+        ([], "error: --to FORMAT is needed"),
     ],
 )
 def test_the_program_refuses_what_it_cannot_do(

@@ -267,7 +267,7 @@ fn undecided(labels: &[Label], confidence: &[f64]) -> Option<Warning> {
     })
 }
 
-/// What is said of the nearest two directions where one would be made of two found so near: they were given.
+/// What is said of the nearest two directions where they are nearer than any that are found: they were given.
 fn near_directions(angles: &[f64], separation: f64) -> Option<String> {
     let pairs = angles.iter().enumerate().flat_map(|(n, &one)| angles[n + 1..].iter().map(move |&other| [one, other]));
     let (least, pair) =

@@ -111,7 +111,11 @@ def run(arguments: argparse.Namespace) -> None:
         terminal.put(listed())
         return
     if arguments.survey is None or arguments.to is None:
-        arguments.parser.error("a SURVEY and --to FORMAT are needed", "groundplan export --list")
+        wanted = [
+            said for said, given in (("a SURVEY", arguments.survey), ("--to FORMAT", arguments.to)) if given is None
+        ]
+        are = "is" if len(wanted) == 1 else "are"
+        arguments.parser.error(f"{' and '.join(wanted)} {are} needed", "groundplan export --list")
     from groundplan._cli.figures import open_survey
 
     given = options(arguments, arguments.to)

@@ -13,8 +13,8 @@ const NEARER: f64 = 0.8;
 pub const AISLE: f64 = 6.0;
 /// Frames back to back are no further apart, metres.
 pub const BACK: f64 = 0.45;
-/// Legs back to back that are seen as one thing are no wider than this together, and the middle of each lies so far within
-/// its end, metres.
+/// Legs back to back that are seen as one thing are no wider than this together, and the middle of each lies half of a usual
+/// leg within that, metres.
 const TWO: f64 = BACK + 0.3;
 const HALF: f64 = 0.05;
 /// Legs stand so near to where they would without the map's error, metres.

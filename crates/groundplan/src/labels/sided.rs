@@ -32,16 +32,11 @@ pub fn is_sided(view: &Turned, strip: &Strip) -> bool {
     are_sided(view, strip, strip.along).into_iter().all(|is_sided| is_sided)
 }
 
-/// True when that is so but for empty bays, where it is known from post to post.
+/// True when something that is not free stands along both sides of a strip but for empty bays, where it is known from post to
+/// post.
 pub fn is_sided_but_for_bays(view: &Turned, strip: &Strip) -> bool {
-    let bays = view.pitch.map_or(0, |pitch| (BAYS * pitch / view.cell) as usize);
-    let columns = view.columns(strip.along);
-    sides(strip).into_iter().all(|[low, high]| {
-        let held = view.blocked_where(columns.clone(), low, high, |share| share > 0.0);
-        let mut held: Vec<bool> = (0..columns.len()).map(|n| held.get(n)).collect();
-        close(&mut held, bays);
-        held.into_iter().filter(|held| *held).count() as f64 >= SIDED * columns.len() as f64
-    })
+    let bays = view.pitch.map_or(0.0, |pitch| BAYS * pitch);
+    are_sided_but_for(view, strip, strip.along, bays).into_iter().all(|is_sided| is_sided)
 }
 
 /// True when something does along one of them between two places, and before the nearest strip on the other side something
@@ -61,10 +56,17 @@ pub fn is_sided_by_bays(view: &Turned, strip: &Strip, along: [f64; 2], beside: [
 
 /// Along which of a strip's sides something that is not free stands between two places.
 pub fn are_sided(view: &Turned, strip: &Strip, along: [f64; 2]) -> [bool; 2] {
+    are_sided_but_for(view, strip, along, 0.0)
+}
+
+/// The same but for gaps that are no longer than that, metres.
+fn are_sided_but_for(view: &Turned, strip: &Strip, along: [f64; 2], gap: f64) -> [bool; 2] {
     let columns = view.column(along[0])..view.column(along[1]);
     sides(strip).map(|[low, high]| {
         let held = view.blocked_where(columns.clone(), low, high, |share| share > 0.0);
-        held.count(0..columns.len()) as f64 >= SIDED * columns.len() as f64
+        let mut held: Vec<bool> = (0..columns.len()).map(|n| held.get(n)).collect();
+        close(&mut held, (gap / view.cell) as usize);
+        held.into_iter().filter(|held| *held).count() as f64 >= SIDED * columns.len() as f64
     })
 }
 

@@ -250,6 +250,7 @@ impl Plan {
             plan = Self::new(views, narrow, threads);
             plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }
+        plan.racks = whole::uncrossed(views, &plan.strips, &plan.extents, &plan.racks);
         (plan, across)
     }
 

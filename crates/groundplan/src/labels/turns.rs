@@ -16,7 +16,7 @@ const EXPECTED: f64 = 0.001;
 /// hardly be open so anywhere by chance.
 pub fn find(through: &Through) -> Vec<Common> {
     let mut chains: Vec<Common> = Vec::new();
-    for n in 0..through.rows().len() {
+    for n in (0..through.rows().len()).filter(|&n| !through.is_wall(n)) {
         for &ends in through.open(n).iter().filter(|ends| ends[1] - ends[0] >= WIDTH.0) {
             follow(through, &mut vec![n], ends, &mut chains);
         }
@@ -53,8 +53,8 @@ fn are_turns(through: &Through, one: &Common, other: &Common) -> bool {
     let is_beside = |n: usize, m: usize| through.next_to(n).any(|next| next == m);
     let last = |common: &Common| common.rows[common.rows.len() - 1];
     let is_shut = |n: &usize, at: &Common| through.open(*n).iter().all(|open| overlap(*open, at.ends) < WIDTH.0);
-    let rows = one.rows.iter().chain(&other.rows);
-    let places = rows.map(|&n| through.rows()[n].row.length() / one.width()).fold(0.0, f64::max);
+    let (rows, width) = (one.rows.iter().chain(&other.rows), one.width().min(other.width()));
+    let places = rows.map(|&n| through.rows()[n].row.length() / width).fold(0.0, f64::max);
     one.rows.len() + other.rows.len() >= ROWS
         && is_beside(last(one), last(other))
         && one.rows.iter().all(|n| is_shut(n, other))

@@ -86,6 +86,21 @@ pub fn find(
     heaviest(views, weighed)
 }
 
+/// Racks without what ways lead through of them: between pieces of one block of goods these may be as narrow as gaps.
+pub fn uncrossed(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], racks: &[Row]) -> Vec<Row> {
+    let crossings = Crossings::new(views, strips, extents);
+    let pieces = |rack: &Row| {
+        let view = &views[rack.direction];
+        let mut left = crossings.uncrossed(rack.direction, rack.across, vec![(rack.along[0], rack.along[1])]);
+        // What a way passes by at an end stands there.
+        let [first, .., last] = &mut left[..] else { return vec![rack.clone()] };
+        (first[0], last[1]) = (rack.along[0], rack.along[1]);
+        let piece = |along: [f64; 2]| trimmed(view, &Row { along, ..rack.clone() }, rack.across);
+        left.into_iter().filter_map(piece).collect()
+    };
+    racks.iter().flat_map(pieces).collect()
+}
+
 /// Rows between two corridors, and of those beside one those as deep as another: racks of a place come in kinds, rooms and
 /// what nobody saw beside a corridor do not.
 fn of_a_kind(rows: &[Row]) -> Vec<Row> {
