@@ -286,3 +286,26 @@ def test_ways_as_wide_as_bays_lead_through_every_other_row_in_line_and_through_t
         for post in range(count + 1):
             row[[0, 1, -2, -1], post * bay : post * bay + 2] = 0
     assert len(ways_across(picture)) == 2 + rows
+
+
+@pytest.mark.parametrize("width", [40, 46, 60])
+@pytest.mark.parametrize("rows", [4, 7])
+def test_a_gap_in_line_through_full_rows_is_a_way_though_one_row_beside_them_has_none(rows: int, width: int) -> None:
+    picture, parts = hall(rows, 22, 600)
+    for row in parts[1:]:
+        row[:, 280 : 280 + width] = 254
+    assert ways_across(picture) == pytest.approx(sorted([*HEADS, width * RESOLUTION]), abs=0.15)
+    assert len(groundplan.survey(picture, resolution=RESOLUTION).of_kind("rack")) == 2 * rows - 1
+
+
+def test_a_rack_ends_where_a_way_leads_through_be_that_as_narrow_as_the_aisles_of_a_shop() -> None:
+    # Five rows 0.8 m deep with 1.5 m between them, and as much between their halves.
+    gap = 30
+    picture = walled(5 * 46 + 30 + 64, 62 + 250 + 42)
+    for n in range(5):
+        left = 20 + 60 + 46 * n
+        picture[20 + 62 : 20 + 62 + 250, left : left + 16] = 0
+        picture[20 + 62 + 110 : 20 + 62 + 110 + gap, left : left + 16] = 254
+    racks = groundplan.survey(picture, resolution=RESOLUTION).of_kind("rack")
+    lengths = sorted(round(float(np.hypot(*np.subtract(*rack["axis"]))), 1) for rack in racks)
+    assert lengths == pytest.approx([5.5] * 5 + [(140 - gap) * RESOLUTION] * 5, abs=0.25)
