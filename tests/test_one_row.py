@@ -185,3 +185,16 @@ def test_no_way_leads_between_two_racks_through_a_wall_that_joins_them(place: fl
     picture = hall(26.5, 8, racks)
     assert labels(picture, "junction", "type") == ["L"] * 4
     assert labels(picture, "corridor", "width") == pytest.approx([2.8, 2.8, 3.5, 3.5], abs=0.25)
+
+
+@pytest.mark.parametrize("head", [3.0, 3.6])
+def test_ways_lead_past_the_ends_of_a_row_of_pallets_of_which_the_blocks_alone_are_seen(head: float) -> None:
+    # Pallets of nine blocks, two deep: nothing closes the row's ends.
+    count, pallet = 12, 1.0
+    places = [
+        (head + pallet * n + 0.1 + 0.35 * k, 2.6 + 0.5 * m) for n in range(count) for k in range(3) for m in range(4)
+    ]
+    blocks: Boxes = [(x, y, x + 0.1, y + 0.1) for x, y in places]
+    picture = hall(2 * head + count * pallet, 6.8, blocks)
+    assert labels(picture, "junction", "type") == ["L"] * 4
+    assert labels(picture, "corridor", "width") == pytest.approx([2.6] * 2 + [head] * 2, abs=0.3)

@@ -166,10 +166,18 @@ impl<'a> Columns<'a> {
             return is_way.then_some((ends, false));
         }
         match self.closing(upright) {
-            Closing::Open => None,
+            // Pallets of which the blocks are seen close nothing, but nothing within is open either.
+            Closing::Open => self.is_full(ends).then_some((ends, true)),
             Closing::Half => Some((ends, true)),
             Closing::Whole => Some((ends, self.is_as_bays(ends))),
         }
+    }
+
+    /// True when nothing of the row is open between its ends for so much as half of a stretch.
+    fn is_full(&self, [from, to]: [f64; 2]) -> bool {
+        let ends = [self.place(0), self.place(self.blocked.len())];
+        let is_within = |[low, high]: &[f64; 2]| *low > ends[0] && *high < ends[1];
+        self.open().iter().filter(|open| is_within(open)).all(|open| open[1] - open[0] < (to - from) / 2.0)
     }
 
     /// The stretches in which nothing closes the row, from where to where along its middle, in order.
