@@ -20,6 +20,7 @@ use crate::bits::Bits;
 use crate::ends::{around, both, holds, overlap, wider};
 use std::cell::LazyCell;
 use std::collections::BTreeMap;
+use std::iter;
 use std::ops::Range;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
@@ -82,9 +83,12 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let is_any_known = |direction: usize| known.iter().any(|way| way.direction == direction);
     let within = LazyCell::new(|| passing::are_within(views, &places));
     let several = through.find(&mut sure, |direction| within[direction]);
-    let mut turns = through.turns();
-    let more: Vec<Strip> = whole.iter().flat_map(Through::turns).collect();
-    turns.extend(more.into_iter().filter(|way| !turns.iter().any(|known| is_in(way, known))).collect::<Vec<_>>());
+    let mut turns: Vec<Strip> = Vec::new();
+    for way in iter::once(&through).chain(&whole).flat_map(Through::turns) {
+        if !turns.iter().any(|known| is_in(&way, known)) {
+            turns.push(way);
+        }
+    }
     // Frames of racks close an empty bay as a cross aisle's guards do: then those of the place tell them apart.
     let all = LazyCell::new(|| [&known[..], &doubtful].concat());
     let all_places = LazyCell::new(|| Place::of_each(views, &all));

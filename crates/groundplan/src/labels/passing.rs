@@ -80,8 +80,8 @@ impl Place<'_> {
 
     /// True when a width is not much less than that of the aisles beside the rows that something passes through.
     pub fn is_as_aisles(&self, strips: &[Strip], own: &Passing, width: f64) -> bool {
-        let aisles = own.rows.iter().flat_map(|&row| self.rows[row].1);
-        aisles.into_iter().all(|aisle| width >= NARROWER * strips[self.aisles[aisle]].width())
+        let mut aisles = own.rows.iter().flat_map(|&row| self.rows[row].1);
+        aisles.all(|aisle| width >= NARROWER * strips[self.aisles[aisle]].width())
     }
 
     /// What leads through all rows of a part of the place, between their ends.

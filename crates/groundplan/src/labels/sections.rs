@@ -339,8 +339,7 @@ impl<'a> Columns<'a> {
     fn is_pair(&self, from: usize, to: usize) -> bool {
         let beyond = |n: Option<usize>| n.and_then(|n| self.faces.get(n)).copied().unwrap_or_default();
         let [before, after] = [from.checked_sub(2), Some(to + 1)].map(beyond);
-        let are_two =
-            before != after && before != [false; 2] && after != [false; 2] && before != [true; 2] && after != [true; 2];
+        let are_two = before[0] != before[1] && after == [before[1], before[0]];
         (to - from) as f64 * self.view.cell <= PAIR && self.are_posts(from, to) && !are_two
     }
 

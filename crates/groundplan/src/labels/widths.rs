@@ -142,7 +142,7 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
                     && !empties::are_about(&place, strips, own, width)
             };
             let is_no_bay = || {
-                is_in_line() || !*is_told_within && (is_way_of_its_row() || place.is_open_through(strips, own, width))
+                !*is_told_within && (is_way_of_its_row() || place.is_open_through(strips, own, width)) || is_in_line()
             };
             let may_lie = || pitch().is_none() || may_be_bay();
             let is_as_bays_lie = || may_lie() && alone.is_as_bays_lie(&place, strips, own, width);
