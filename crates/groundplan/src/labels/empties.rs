@@ -13,28 +13,6 @@ const OPEN: f64 = 0.02;
 /// What is open so near to a way is of that, metres.
 const NEAR: f64 = 0.3;
 
-/// True when what leads through some rows between their ends lies as empty bays do: more of the rows is open as wide
-/// elsewhere, and not as many lead through each. What leads through most of them and lies open in the others is none.
-pub fn is_empty(place: &Place, strips: &[Strip], n: usize) -> bool {
-    let own = &place.passing[n];
-    let (Some(first), width) = (place.first_of(own), strips[n].width()) else { return false };
-    if !own.is_within {
-        return false;
-    }
-    let rows = place.rows_with(first);
-    let is_alike = |m: &&usize| {
-        let other = &place.passing[**m];
-        other.is_within && !other.next.is_empty() && are_alike(strips[**m].width(), width)
-    };
-    let as_many = |row: usize| place.through[row].iter().filter(is_alike).count();
-    let own_many = as_many(first);
-    let goes_on = || {
-        let is_most = own.rows.len() > own.next.len() && own.rows.len() + own.next.len() == rows.len();
-        is_most && own.next.iter().all(|&row| is_open_at(place, &strips[n], row))
-    };
-    rows.iter().any(|&row| as_many(row) != own_many) && have_empty_bays(place, strips, &rows, width) && !goes_on()
-}
-
 /// True when more of some rows is open over as much as a width than what leads through them.
 pub fn have_empty_bays(place: &Place, strips: &[Strip], rows: &BTreeSet<usize>, width: f64) -> bool {
     let [open, all] = rows.iter().fold([0; 2], |sum, &row| {
@@ -49,18 +27,43 @@ pub fn are_about(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> 
     place.first_of(own).is_some_and(|first| have_empty_bays(place, strips, &place.rows_with(first), width))
 }
 
-/// True when a row is open all across a strip, were that longer.
-fn is_open_at(place: &Place, strip: &Strip, row: usize) -> bool {
-    let [from, to] = columns(place, strip, row, -NEAR);
-    let holds = |run: &Run| run.0 <= from && to <= run.1;
-    from < to && place.shelves(row).open().iter().any(holds)
+/// How many places would be expected at which chance opens as many rows one beside another as wide, by how much of each of
+/// those that a strip leads through, and of all of their part, is so elsewhere. Ways of other widths are left out of that, and
+/// others as wide count as empty bays.
+pub fn expected(place: &Place, strips: &[Strip], n: usize) -> f64 {
+    let (own, width) = (&place.passing[n], strips[n].width());
+    let Some(first) = place.first_of(own) else { return 0.0 };
+    let part = place.rows_with(first);
+    let is_left_out = |way: usize| way == n || !are_alike(strips[way].width(), width);
+    let places = |columns: usize| columns as f64 * place.views[0].cell / width;
+    let of_row = |row: usize| open_without(place, strips, row, width, is_left_out).map(places);
+    let all: Vec<[f64; 2]> = part.iter().map(|&row| of_row(row)).collect();
+    let [open, count] = all.iter().fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
+    let common = (open + 0.5) / (count + 1.0);
+    let passed = part.iter().zip(&all).filter(|(row, _)| own.rows.contains(row));
+    let chance: f64 = passed.map(|(_, [open, count])| common.max(open / count.max(1.0))).product();
+    // As many rows one beside another begin at each but the last ones.
+    let firsts = (part.len() + 1).saturating_sub(own.racks).max(1) as f64;
+    chance * firsts * all.iter().map(|[_, count]| *count).fold(0.0, f64::max)
 }
 
 /// How many columns of a row are open over as much as a width, and how many there are, both without those of its ways.
 fn open_besides(place: &Place, strips: &[Strip], row: usize, width: f64) -> [usize; 2] {
+    open_without(place, strips, row, width, |_| true)
+}
+
+/// The same without those of some of its ways.
+fn open_without(
+    place: &Place,
+    strips: &[Strip],
+    row: usize,
+    width: f64,
+    is_left_out: impl Fn(usize) -> bool,
+) -> [usize; 2] {
     let shelves = place.shelves(row);
     let mut ways: Vec<Run> = place.through[row]
         .iter()
+        .filter(|way| is_left_out(**way))
         .map(|&way| columns(place, &strips[way], row, NEAR))
         .map(|[from, to]| (from, to))
         .collect();

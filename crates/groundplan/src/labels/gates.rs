@@ -6,6 +6,7 @@ use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
 use super::empties;
 use super::look::Look;
+use super::narrowed;
 use super::passing::{self, Place};
 use super::rows::Row;
 use super::sections::{Columns, WIDTH};
@@ -32,6 +33,8 @@ const SQUARE: f64 = 0.05;
 
 /// Ways through rows, as strips of the direction that crosses them.
 pub struct Gates {
+    /// Those that were known, each as wide as the uprights beside it leave.
+    pub known: Vec<Strip>,
     pub ways: Vec<Strip>,
     /// Others that are told from bays, as wide as they may be.
     pub as_bays: Vec<Strip>,
@@ -43,6 +46,11 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let placed = placed(views, strips.iter().map(Strip::place));
     let widest = corridors::widest(strips);
     let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, &placed, widest, row)).collect();
+    // A way that is known cuts the row that it leads through.
+    let uncut = uncut(views, rows);
+    let whole = uncut.as_ref().map(|rows| seen(evidence, look, views, strips, rows, rows));
+    let narrow = whole.as_ref().map(|rows| narrowed::between_uprights(strips, rows, &placed, widest));
+    let strips = narrow.as_deref().unwrap_or(strips);
     let mut through = Through::new(views, strips, seen(evidence, look, views, strips, rows, &reaching));
     // What leads past rows at a wall, or through a row that is a wall itself from one wall to another, though it is as wide as
     // bays; it tells nothing of how wide other ways are.
@@ -59,9 +67,8 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
         }
     }
     let mut as_bays: Vec<Strip> = views.iter().flat_map(|view| between_posts(view, through.rows())).collect();
-    // What leads through each row is counted in whole rows: a way that is known cuts the one that it leads through.
-    let whole = uncut(views, rows);
-    let whole = whole.as_ref().map(|rows| Through::new(views, strips, seen(evidence, look, views, strips, rows, rows)));
+    // What leads through each row is counted in whole rows.
+    let whole = whole.map(|rows| Through::new(views, strips, rows));
     let in_each_row = whole.as_ref().unwrap_or(&through).in_each_row();
     for (gate, is_as_a_bay) in through.at_walls(strips, &placed) {
         let found = if is_as_a_bay { &mut at_walls } else { &mut gates };
@@ -115,7 +122,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     as_bays.extend(turns);
     as_bays.extend(as_wide_as_others(views, strips, &ways, in_each_row));
     as_bays.retain(|gate| !ways.iter().any(|way| is_in(gate, way)));
-    Gates { ways, as_bays: in_line(as_bays) }
+    Gates { known: strips.to_vec(), ways, as_bays: in_line(as_bays) }
 }
 
 /// The rows, of directions of which bays are known, as if no way that is known cut them, none of them up to the walls beyond

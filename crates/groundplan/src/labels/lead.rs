@@ -3,7 +3,7 @@
 use super::corridors::Strip;
 use super::rows::Row;
 use super::turned::Turned;
-use crate::ends::{sorted, wider};
+use crate::ends::{holds, sorted, wider};
 
 /// A strip and a row that it crosses or ends before, and the directions of the row and of the strip.
 pub struct Lead<'a> {
@@ -25,6 +25,12 @@ impl Lead<'_> {
         let middle = f64::midpoint(self.row.across[0], self.row.across[1]);
         let reach = self.strip.width() / 2.0 / other.sine(view);
         wider([view.crossing(other, middle, self.strip.middle())[1]; 2], reach)
+    }
+
+    /// True when the strip leads through the row, or past its end.
+    pub fn is_across(&self) -> bool {
+        let middle = f64::midpoint(self.row.across[0], self.row.across[1]);
+        holds(self.strip.along, self.along([middle; 2])[0])
     }
 
     /// True when it would lie between the row's ends.

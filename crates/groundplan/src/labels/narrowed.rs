@@ -1,9 +1,13 @@
-//! Ways past the ends of racks: one that racks across it reach into from its sides is as wide as what they leave of it, and
-//! one whose sides are no lines ends with the racks beside it, unless it leads on to something.
+//! Ways through rows of racks, and past their ends: one that what stands in rows reaches into from its sides is as wide as
+//! that leaves it, and one whose sides are no lines ends with the racks beside it, unless it leads on to something.
 
 use super::beside::Beside;
 use super::corridors::Strip;
+use super::gates::leading_across;
+use super::lead::Lead;
 use super::rows::{DEPTH, Row, SAME};
+use super::sections::WIDTH;
+use super::seen::Seen;
 use super::turned::Turned;
 use crate::ends::{around, both, overlap, shared, wider};
 
@@ -11,6 +15,28 @@ use crate::ends::{around, both, overlap, shared, wider};
 const LEFT: f64 = 0.5;
 /// A rack stands across a direction when the cosine of the angle between is no more than this.
 const ASKEW: f64 = 0.05;
+
+/// The strips, each no wider than the uprights of that row leave it which leaves most, of those that it leads through between
+/// their ends; where they leave no way it is as it was. It is known where all of them lie, and none is wider than the widest.
+pub fn between_uprights(strips: &[Strip], rows: &[Seen], placed: &[Beside], widest: f64) -> Vec<Strip> {
+    let mut most: Vec<Option<[f64; 2]>> = vec![None; strips.len()];
+    for seen in rows {
+        for n in leading_across(seen.views, placed, seen.row, widest) {
+            let strip = &strips[n];
+            let lead = Lead { views: seen.views, row: seen.row, strip };
+            if lead.is_across() && lead.is_within() {
+                let left = seen.gap_about(strip.middle()).map_or(strip.across, |gap| shared(strip.across, gap));
+                let is_wider = |most: [f64; 2]| most[1] - most[0] >= left[1] - left[0];
+                most[n] = most[n].filter(|most| is_wider(*most)).or(Some(left));
+            }
+        }
+    }
+    let narrow = |(strip, most): (&Strip, Option<[f64; 2]>)| {
+        let across = most.filter(|[low, high]| high - low >= WIDTH.0).unwrap_or(strip.across);
+        Strip { across, ..strip.clone() }
+    };
+    strips.iter().zip(most).map(narrow).collect()
+}
 
 /// The strips, each between the racks that reach into it, and from where to where it leads along; none becomes narrower
 /// than the least that a corridor is.

@@ -29,6 +29,8 @@ const APART: f64 = 0.5;
 pub const SIDE: f64 = 0.35;
 /// A column of which this share is not free is of what closes a row.
 pub const TAKEN: f64 = 0.5;
+/// Uprights end between columns, so far beyond those that are free, in columns, on either side.
+const BETWEEN: f64 = 0.25;
 /// No more than this share of a column is not free where nothing closes a row.
 pub const LEFT: f64 = 0.25;
 /// A way is free but for this share, metre for metre: one walks round what was left in it.
@@ -199,6 +201,16 @@ impl<'a> Columns<'a> {
     pub fn closed_elsewhere(&self, sides: [f64; 2]) -> Vec<bool> {
         let others = self.free().into_iter().filter(|(ends, _)| overlap(*ends, sides) <= 0.0);
         others.flat_map(|(_, closed)| closed).collect()
+    }
+
+    /// Between which two uprights a place lies in which none stands, along the row's middle.
+    pub fn gap_about(&self, along: f64) -> Option<[f64; 2]> {
+        let n = ((along - self.row.along[0]) / self.view.cell).max(0.0) as usize;
+        let (before, after) = self.stops.split_at_checked(n)?;
+        let is_upright = |stops: &bool| *stops;
+        let from = before.iter().rposition(is_upright)? + 1;
+        let to = n + after.iter().position(is_upright).filter(|free| *free > 0)?;
+        Some(wider([self.place(from), self.place(to)], BETWEEN * self.view.cell))
     }
 
     /// How far from its lower end, or from its upper one, the first of it stands, metres, and the first that fills half of it:

@@ -41,9 +41,7 @@ impl Seen<'_> {
 
     /// Where nothing stands in it, across the direction that crosses it.
     pub fn open(&self) -> Vec<[f64; 2]> {
-        let [view, other] = self.views;
-        let place = |u: f64| other.place(view.to_map([u, self.middle()]))[1];
-        self.columns.open().into_iter().map(|ends| sorted(ends.map(place))).collect()
+        self.columns.open().into_iter().map(|ends| self.across(ends)).collect()
     }
 
     /// The place along it where something crosses it.
@@ -55,6 +53,17 @@ impl Seen<'_> {
     /// From where to where along it something crosses it.
     pub fn stretch(&self, across: [f64; 2]) -> [f64; 2] {
         sorted(across.map(|end| self.along(end)))
+    }
+
+    /// Between which two of its uprights something crosses it, across the direction that crosses it.
+    pub fn gap_about(&self, across: f64) -> Option<[f64; 2]> {
+        self.columns.gap_about(self.along(across)).map(|ends| self.across(ends))
+    }
+
+    /// What lies so along it, across the direction that crosses it.
+    fn across(&self, ends: [f64; 2]) -> [f64; 2] {
+        let [view, other] = self.views;
+        sorted(ends.map(|u| other.place(view.to_map([u, self.middle()]))[1]))
     }
 
     /// True when a stretch is as wide as a bay, or as some beside one another.

@@ -258,8 +258,8 @@ impl Plan {
     /// through rows before some of them were left out.
     fn with_others(self, evidence: &Evidence, look: &Look, views: &[Turned]) -> (Self, Vec<Strip>) {
         let threads = evidence.threads;
-        let Gates { ways, as_bays } = gates::find(evidence, look, views, &self.strips, &self.rows);
-        let across = [self.strips.clone(), ways].concat();
+        let Gates { known, ways, as_bays } = gates::find(evidence, look, views, &self.strips, &self.rows);
+        let across = [known, ways].concat();
         let alike = [widths::alike(evidence, look, views, &across), as_bays].concat();
         let carried = carried::on(evidence, look, views, joined::apart(views, alike));
         let mut plan = if carried == self.strips { self } else { Self::new(views, carried, threads) };

@@ -9,7 +9,7 @@ use super::empties;
 use super::look::Look;
 use super::passing::{Passing, Place};
 use super::rows::SHORTEST;
-use super::sections::{WIDTH, is_as_bays};
+use super::sections::{BAY, WIDTH, is_as_bays};
 use super::seldom;
 use super::turned::Turned;
 use crate::ends::{shared, sorted, wider};
@@ -26,6 +26,9 @@ const APART: f64 = 0.1;
 const FARTHER: f64 = 1.0;
 /// Chance does not open so many rows in line where hardly a place of them is.
 const IN_LINE: usize = 3;
+/// What leads through several rows is a way where fewer such places would be expected by chance, and none as wide as a bay where
+/// more are.
+const EXPECTED: (f64, f64) = (0.005, 1.0);
 /// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
 const WALL: f64 = 0.9;
 const TAKEN: f64 = 0.2;
@@ -125,7 +128,13 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             let goes_past = |&row: &usize| place.goes_past(row, &strips[n], FARTHER);
             let is_barred = || bars.end_rows_before(n) && own.next.iter().all(goes_past);
             let is_past_ends = || own.rows.len() > 1 && !own.is_within && (!bars.reach_into(n) || is_barred());
-            let is_some = !own.next.is_empty() && !known.is_empty() && !is_as_the_hall_leaves() && !is_past_ends();
+            // What is as wide as a bay where chance would open rows so is one, whatever is as wide.
+            let is_one_bay = || pitch().is_some_and(|pitch| width <= BAY * pitch);
+            let is_anywhere = || own.is_within && is_one_bay() && empties::expected(&place, strips, n) > EXPECTED.1;
+            let is_some = !own.next.is_empty()
+                && (!known.is_empty() || is_anywhere())
+                && !is_as_the_hall_leaves()
+                && !is_past_ends();
             // Where the rows beside it go on to the wall, one that does not is empty there.
             let is_bay = || own.rows.len() == 1 && !own.is_led_on && is_at_wall(other, &strips[n]);
             // Ways past the rows' ends are as wide as the hall leaves, and tell nothing of what leads through the rows.
@@ -136,28 +145,28 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             };
             // Through several rows in line, of which nothing else is as wide open, leads a way.
             let is_in_line = || {
-                own.is_within
-                    && own.racks >= IN_LINE
-                    && width >= WIDTH.0
-                    && !empties::are_about(&place, strips, own, width)
+                let is_seldom = || {
+                    own.racks >= IN_LINE && !empties::are_about(&place, strips, own, width)
+                        || empties::expected(&place, strips, n) < EXPECTED.0
+                };
+                own.is_within && own.racks > 1 && width >= WIDTH.0 && is_seldom()
             };
             let is_no_bay = || {
                 !*is_told_within && (is_way_of_its_row() || place.is_open_through(strips, own, width)) || is_in_line()
             };
             let may_lie = || pitch().is_none() || may_be_bay();
             let is_as_bays_lie = || may_lie() && alone.is_as_bays_lie(&place, strips, own, width);
-            let is_empty = || *is_told_within && may_be_bay() && empties::is_empty(&place, strips, n);
-            let lies_as_bays = || is_as_bays_lie() || is_empty();
             // Where width and place disagree, or neither tells, bars do; and where these are missed it is none.
-            let is_told = || match (known.have(width, pitch()) || is_no_bay(), is_bay() || lies_as_bays()) {
-                (true, false) => !bars.are_missed(n),
-                (false, true) => false,
-                (true, true) => bars.are_beside(n),
-                // What fills a rack's depth is as a bar, but of two racks back to back goods seldom line up so.
-                (false, false) => {
-                    !*is_told_within && view.pitch.is_some() && own.rows.iter().all(is_double) && bars.are_beside(n)
-                }
-            };
+            let is_told =
+                || match (known.have(width, pitch()) && !is_anywhere() || is_no_bay(), is_bay() || is_as_bays_lie()) {
+                    (true, false) => !bars.are_missed(n),
+                    (false, true) => false,
+                    (true, true) => bars.are_beside(n),
+                    // What fills a rack's depth is as a bar, but of two racks back to back goods seldom line up so.
+                    (false, false) => {
+                        !*is_told_within && view.pitch.is_some() && own.rows.iter().all(is_double) && bars.are_beside(n)
+                    }
+                };
             stays[n] &= (!is_some || is_told()) && !bars.are_parted(n);
             if let Some(cut) = stays[n].then(|| bars.cut(n)).flatten() {
                 pieces[n] = cut;
