@@ -37,7 +37,7 @@ const ENDING: usize = 3;
 /// A wall closes a row where so much of what lies along the wall is not free.
 const CLOSED: f64 = 0.5;
 /// A way is so many times as wide as the aisles that lead to it.
-const LEADING: f64 = 0.55;
+const LEADING: f64 = 0.42;
 /// No more than this share of the way is not free.
 const CLEAR: f64 = 0.1;
 

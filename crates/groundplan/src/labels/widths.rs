@@ -28,7 +28,7 @@ const FARTHER: f64 = 1.0;
 const IN_LINE: usize = 3;
 /// What leads through several rows is a way where fewer such places would be expected by chance, and none as wide as a bay where
 /// more are.
-const EXPECTED: (f64, f64) = (0.005, 1.0);
+const EXPECTED: (f64, f64) = (0.01, 1.0);
 /// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
 const WALL: f64 = 0.9;
 const TAKEN: f64 = 0.2;
