@@ -298,6 +298,44 @@ def test_a_gap_in_line_through_full_rows_is_a_way_though_one_row_beside_them_has
     assert len(groundplan.survey(picture, resolution=RESOLUTION).of_kind("rack")) == 2 * rows - 1
 
 
+@pytest.mark.parametrize("seed", range(1, 5))
+@pytest.mark.parametrize("rows", [2, 3])
+def test_ways_past_the_ends_that_are_as_wide_as_bays_make_no_empty_bay_a_way(rows: int, seed: int) -> None:
+    draws = np.random.default_rng(seed)
+    count = 16
+    picture = walled((count + 2) * BAY, rows * 22 + (rows + 1) * AISLE)
+    full = draws.random((rows, count)) > 0.3
+    # No bay is empty in each row.
+    full[draws.integers(0, rows, count), np.arange(count)] = True
+    for n, own in enumerate(full.tolist()):
+        low = 20 + AISLE + n * (AISLE + 22)
+        fill(picture[low : low + 22, 20 + BAY : 20 + (count + 1) * BAY], range(0, count * BAY, BAY), own)
+    assert ways_across(picture) == pytest.approx([BAY * RESOLUTION] * 2, abs=0.3)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_way_is_as_wide_as_the_posts_beside_it_leave_whatever_lines_are_near(seed: int) -> None:
+    """One through each row at its own place: posts, and goods that stand back from them, have lines in other rows."""
+    draws = np.random.default_rng(seed)
+    bay, bays, width = 44, 12, 62  # pixels: 2.2 and 3.1 m
+    picture, rows = hall(7, 24, bays * bay + width + 2)
+    places = draws.choice(range(2, bays - 1, 2), len(rows), replace=True).tolist()
+    for row, at in zip(rows, places, strict=True):
+        row[:] = 254
+        for n in range(bays):
+            start = n * bay + (width if n >= at else 0)
+            row[2:-2, start + 3 : start + bay - 1] = 0
+            for post in (start, start + bay):
+                row[[0, 1, -2, -1], post : post + 2] = 0
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    ways = [way for way in survey.of_kind("corridor") if way["name"].startswith("C")]
+    across = [way for way in ways if way["width"] < 4]
+    assert [way["width"] for way in across] == pytest.approx([width * RESOLUTION] * len(across), abs=0.25)
+    lengths = [np.linalg.norm(np.subtract(*way["axis"])) for way in across]
+    aisles = (AISLE + 24) * RESOLUTION
+    assert sum(lengths) == pytest.approx(len(rows) * aisles, abs=1.0)
+
+
 def test_a_rack_ends_where_a_way_leads_through_be_that_as_narrow_as_the_aisles_of_a_shop() -> None:
     # Five rows 0.8 m deep with 1.5 m between them, and as much between their halves.
     gap = 30

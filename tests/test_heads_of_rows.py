@@ -47,7 +47,13 @@ def test_aisles_meet_the_way_along_the_wall_before_rows_of_any_length(early: tup
 
 
 @pytest.mark.parametrize(
-    "early", [(-1.0, 4.0, 4.0, -1.0, 4.0), (-1.1, 1.6, 1.6, -1.1, 1.6), (-1.1, 3.0, 3.0, -1.1, 3.0)]
+    "early",
+    [
+        (-1.0, 4.0, 4.0, -1.0, 4.0),
+        (-1.1, 1.6, 1.6, -1.1, 1.6),
+        (-1.1, 3.0, 3.0, -1.1, 3.0),
+        (-1.5, 3.0, 1.6, -1.5, 4.0),
+    ],
 )
 def test_the_way_along_the_wall_may_be_narrower_than_the_aisles_that_lead_to_it(early: tuple[float, ...]) -> None:
     survey = hall(early)

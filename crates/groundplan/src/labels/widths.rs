@@ -26,8 +26,8 @@ const APART: f64 = 0.1;
 const FARTHER: f64 = 1.0;
 /// Chance does not open so many rows in line where hardly a place of them is.
 const IN_LINE: usize = 3;
-/// What leads through several rows is a way where fewer such places would be expected by chance, and none as wide as a bay where
-/// more are.
+/// What leads through several rows is a way where no more such places would be expected by chance than the first, and an empty
+/// bay, if it is as wide as one, where more would be than the second.
 const EXPECTED: (f64, f64) = (0.01, 1.0);
 /// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
 const WALL: f64 = 0.9;
@@ -91,7 +91,8 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 /// The strips without those that lead through some rows of a place and have no width of what leads through all: bays; nor
 /// those at a wall that the rows beside go on to. Where nothing leads through all but past their ends, what has no bays'
 /// width is none, nor what each row has as many of, between bars that stand beside nothing else, nor what leads through rows
-/// of two racks that are open more often than by chance; where something does, what lies as empty bays do is one. What leads
+/// of two racks that are open more often than by chance. What is as wide as a bay is one, whatever ways are as wide, where so
+/// many rows would be open somewhere by chance; and what leads through several rows is none where they hardly would. What leads
 /// past rows' ends up to one that goes on farther is none, but where something leads through all and it is as wide as bays,
 /// nor where nothing of the rows beside reaches into it, or those before it end at bars and that one goes on past it. Nor
 /// those beside which, with no rack between, one leads through more rows; nor those that posts part into bays in all their
@@ -128,9 +129,10 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             let goes_past = |&row: &usize| place.goes_past(row, &strips[n], FARTHER);
             let is_barred = || bars.end_rows_before(n) && own.next.iter().all(goes_past);
             let is_past_ends = || own.rows.len() > 1 && !own.is_within && (!bars.reach_into(n) || is_barred());
-            // What is as wide as a bay where chance would open rows so is one, whatever is as wide.
+            // What is as wide as a bay is one where chance would open rows so anyhow, whatever else is as wide.
             let is_one_bay = || pitch().is_some_and(|pitch| width <= BAY * pitch);
             let is_anywhere = || own.is_within && is_one_bay() && empties::expected(&place, strips, n) > EXPECTED.1;
+            let is_as_wide = || known.have(width, pitch()) && !is_anywhere();
             let is_some = !own.next.is_empty()
                 && (!known.is_empty() || is_anywhere())
                 && !is_as_the_hall_leaves()
@@ -157,16 +159,15 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             let may_lie = || pitch().is_none() || may_be_bay();
             let is_as_bays_lie = || may_lie() && alone.is_as_bays_lie(&place, strips, own, width);
             // Where width and place disagree, or neither tells, bars do; and where these are missed it is none.
-            let is_told =
-                || match (known.have(width, pitch()) && !is_anywhere() || is_no_bay(), is_bay() || is_as_bays_lie()) {
-                    (true, false) => !bars.are_missed(n),
-                    (false, true) => false,
-                    (true, true) => bars.are_beside(n),
-                    // What fills a rack's depth is as a bar, but of two racks back to back goods seldom line up so.
-                    (false, false) => {
-                        !*is_told_within && view.pitch.is_some() && own.rows.iter().all(is_double) && bars.are_beside(n)
-                    }
-                };
+            let is_told = || match (is_as_wide() || is_no_bay(), is_bay() || is_as_bays_lie()) {
+                (true, false) => !bars.are_missed(n),
+                (false, true) => false,
+                (true, true) => bars.are_beside(n),
+                // What fills a rack's depth is as a bar, but of two racks back to back goods seldom line up so.
+                (false, false) => {
+                    !*is_told_within && view.pitch.is_some() && own.rows.iter().all(is_double) && bars.are_beside(n)
+                }
+            };
             stays[n] &= (!is_some || is_told()) && !bars.are_parted(n);
             if let Some(cut) = stays[n].then(|| bars.cut(n)).flatten() {
                 pieces[n] = cut;
