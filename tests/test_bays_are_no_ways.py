@@ -336,6 +336,15 @@ def test_a_way_is_as_wide_as_the_posts_beside_it_leave_whatever_lines_are_near(s
     assert sum(lengths) == pytest.approx(len(rows) * aisles, abs=1.0)
 
 
+@pytest.mark.parametrize("widths", [(38, 48, 62, 44), (60, 40, 50, 36, 46)])
+def test_one_gap_in_each_row_without_bays_is_a_way_however_wide(widths: tuple[int, ...]) -> None:
+    picture, rows = hall(len(widths), 24, 800)
+    for row, width, at in zip(rows, widths, [120, 560, 300, 430, 640], strict=False):
+        row[:, at : at + width] = 254
+    expected = sorted([*HEADS, *(width * RESOLUTION for width in widths)])
+    assert ways_across(picture) == pytest.approx(expected, abs=0.15)
+
+
 def test_a_rack_ends_where_a_way_leads_through_be_that_as_narrow_as_the_aisles_of_a_shop() -> None:
     # Five rows 0.8 m deep with 1.5 m between them, and as much between their halves.
     gap = 30

@@ -74,6 +74,17 @@ impl Alone {
     }
 }
 
+/// True when as many ways of any width lead through each of the rows of a way's place between their ends, alone or with others.
+pub fn is_one_of_each(place: &Place, own: &Passing) -> bool {
+    let Some(first) = place.first_of(own).filter(|_| own.is_within) else { return false };
+    let whole = in_line(place, place.rows_with(first));
+    let many = |rows: &BTreeSet<usize>| {
+        let through = rows.iter().flat_map(|&row| &place.through[row]);
+        through.filter(|way| place.passing[**way].is_within).collect::<BTreeSet<_>>().len()
+    };
+    whole.len() >= ROWS && whole.iter().all(|rows| many(rows) == many(&whole[0]))
+}
+
 /// Rows that are in line with one another are pieces of one: where one of the aisles beside it was seen in pieces.
 fn in_line(place: &Place, rows: BTreeSet<usize>) -> Vec<BTreeSet<usize>> {
     let across = |row: usize| place.rows[row].0.across;
