@@ -51,6 +51,7 @@ mod patches;
 mod patterns;
 mod period;
 mod pieces;
+mod pillared;
 mod pillars;
 mod pitch;
 mod places;

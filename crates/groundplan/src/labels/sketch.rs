@@ -21,6 +21,7 @@ use super::look::Look;
 use super::meeting::Meeting;
 use super::narrowed;
 use super::panes;
+use super::pillared;
 use super::quarter;
 use super::racks;
 use super::ragged::{self, Ways};
@@ -218,7 +219,7 @@ impl Plan {
             |way: &Strip| beyond[way.direction].touching(way.along, way.across).into_iter().any(|n| on[n] == *way);
         found.retain(|way| !is_on(way));
         let found = rows::without_lanes(views, crossed::without_bays(evidence, look, views, found));
-        let found = slots::without(views, found);
+        let found = pillared::widened(views, &slots::without(views, found), evidence.parameters);
         let threads = evidence.threads;
         let standing = Standing::new(views, evidence.recall, threads);
         // What was too short to stay bars no way whose sides are no lines, but tells how wide that is.

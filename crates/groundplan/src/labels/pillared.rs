@@ -1,0 +1,74 @@
+//! Ways in which pillars stand in a line: between that and a wall there is floor too, too little for a way beside the way.
+
+use super::beside::placed;
+use super::corridors::Strip;
+use super::rows::SAME;
+use super::runs::runs;
+use super::turned::Turned;
+use crate::ends::{overlap, sorted};
+use crate::parameters::Parameters;
+
+/// So many pillars at least, no longer than this along the way, metres, over no more than this share of it.
+const PILLARS: usize = 3;
+const LONGEST: f64 = 1.0;
+const SHARE: f64 = 0.25;
+/// Behind them one walks over so much floor at least, metres, of which no more than this share is not free.
+const BEHIND: f64 = 0.8;
+const CLEAR: f64 = 0.02;
+/// A wall is where so much of what lies along the way is not free.
+const WALL: f64 = 0.8;
+
+/// The strips, each up to the wall behind the pillars at its side that is no farther from these than it is wide, without those
+/// that lead along there. It becomes no wider than the widest, nor where another one goes on farther there.
+pub fn widened(views: &[Turned], strips: &[Strip], parameters: &Parameters) -> Vec<Strip> {
+    let placed = placed(views, strips.iter().map(Strip::place));
+    let (mut wide, mut stays) = (strips.to_vec(), vec![true; strips.len()]);
+    for (n, strip) in strips.iter().enumerate().filter(|(_, strip)| !strip.bays) {
+        for side in [0, 1] {
+            let most = strip.width().min(parameters.labels_max_width - wide[n].width());
+            let Some(wall) = behind_pillars(&views[strip.direction], strip, side, most) else { continue };
+            let behind = sorted([strip.across[side], wall]);
+            let mut others = placed[strip.direction].touching(strip.along, behind);
+            others.retain(|&m| m != n && overlap(strips[m].across, behind) > SAME);
+            let is_behind = |m: &usize| {
+                overlap(strips[*m].across, behind) >= strips[*m].width() - SAME
+                    && overlap(strips[*m].along, strip.along) >= strips[*m].length() - strip.width()
+            };
+            if others.iter().all(is_behind) {
+                wide[n].across[side] = wall;
+                for m in others {
+                    stays[m] = false;
+                }
+            }
+        }
+    }
+    wide.into_iter().zip(stays).filter_map(|(strip, stays)| stays.then_some(strip)).collect()
+}
+
+/// Where the wall stands behind the pillars at a side of a strip, across, no farther from it than the most.
+fn behind_pillars(view: &Turned, strip: &Strip, side: usize, most: f64) -> Option<f64> {
+    let out = if side == 0 { -1.0 } else { 1.0 };
+    let at = |off: f64| strip.across[side] + out * off;
+    let between = |from: f64, to: f64| sorted([at(from), at(to)]);
+    let columns = view.columns(strip.along);
+    let steps = (most / view.cell) as usize;
+    let is_wall = |step: &usize| {
+        let [low, high] = between(*step as f64 * view.cell, (step + 1) as f64 * view.cell);
+        view.mean_blocked(columns.clone(), low, high) >= WALL
+    };
+    let wall = (0..steps).find(is_wall)? as f64 * view.cell;
+    if wall < BEHIND + view.cell {
+        return None;
+    }
+    let [low, high] = between(wall - BEHIND, wall - view.cell);
+    if view.mean_blocked(columns.clone(), low, high) > CLEAR {
+        return None;
+    }
+    let [low, high] = between(-view.cell, wall - BEHIND);
+    let stands: Vec<bool> = view.some_blocked(columns, low, high).into_iter().map(|share| share > 0.0).collect();
+    let pillars = runs(&stands, true);
+    let is_pillar = |&(from, to): &(usize, usize)| (to - from) as f64 * view.cell <= LONGEST;
+    let taken = stands.iter().filter(|stands| **stands).count() as f64;
+    let are_pillars = pillars.len() >= PILLARS && pillars.iter().all(is_pillar) && taken <= SHARE * stands.len() as f64;
+    are_pillars.then(|| at(wall))
+}
