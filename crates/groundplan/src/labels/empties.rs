@@ -1,5 +1,5 @@
-//! Whether what leads through some rows of a place is an empty bay: where another way leads through all of them, and more of
-//! the rows is open.
+//! How much of the rows of a place is open as empty bays are, besides the ways through them, and what of that chance would put
+//! in line.
 
 use super::corridors::Strip;
 use super::passing::{Passing, Place};
@@ -28,23 +28,25 @@ pub fn are_about(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> 
 }
 
 /// How many places would be expected at which chance opens as many rows one beside another as wide, by how much of each of
-/// those that a strip leads through, and of all of their part, is so elsewhere. Ways of other widths are left out of that, and
-/// others as wide count as empty bays.
-pub fn expected(place: &Place, strips: &[Strip], n: usize) -> f64 {
+/// those that a strip leads through, and of all of their part, is so elsewhere; nothing where it leads through walls alone. What
+/// else is as wide counts as empty bays, but for what leads through all rows or through the same ones: of several ways none
+/// speaks against another.
+pub fn expected(place: &Place, strips: &[Strip], n: usize) -> Option<f64> {
     let (own, width) = (&place.passing[n], strips[n].width());
-    let Some(first) = place.first_of(own) else { return 0.0 };
-    let part = place.rows_with(first);
-    let is_left_out = |way: usize| way == n || !are_alike(strips[way].width(), width);
+    let part = place.rows_with(place.first_of(own)?);
+    let is_way = |other: &Passing| other.is_within && other.is_whole() || own.racks > 1 && other.rows == own.rows;
+    let is_left_out = |way: usize| way == n || is_way(&place.passing[way]) || !are_alike(strips[way].width(), width);
     let places = |columns: usize| columns as f64 * place.views[0].cell / width;
     let of_row = |row: usize| open_without(place, strips, row, width, is_left_out).map(places);
     let all: Vec<[f64; 2]> = part.iter().map(|&row| of_row(row)).collect();
     let [open, count] = all.iter().fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
+    // As if half a place more were open and one more were there: few tell little.
     let common = (open + 0.5) / (count + 1.0);
     let passed = part.iter().zip(&all).filter(|(row, _)| own.rows.contains(row));
     let chance: f64 = passed.map(|(_, [open, count])| common.max(open / count.max(1.0))).product();
     // As many rows one beside another begin at each but the last ones.
     let firsts = (part.len() + 1).saturating_sub(own.racks).max(1) as f64;
-    chance * firsts * all.iter().map(|[_, count]| *count).fold(0.0, f64::max)
+    Some(chance * firsts * all.iter().map(|[_, count]| *count).fold(0.0, f64::max))
 }
 
 /// How many columns of a row are open over as much as a width, and how many there are, both without those of its ways.

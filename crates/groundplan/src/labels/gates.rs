@@ -33,7 +33,7 @@ const SQUARE: f64 = 0.05;
 
 /// Ways through rows, as strips of the direction that crosses them.
 pub struct Gates {
-    /// Those that were known, each as wide as the uprights beside it leave.
+    /// Those that were known: where bays recur, each as wide as the uprights of the rows that it leads through leave.
     pub known: Vec<Strip>,
     pub ways: Vec<Strip>,
     /// Others that are told from bays, as wide as they may be.
@@ -47,9 +47,10 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let widest = corridors::widest(strips);
     let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, &placed, widest, row)).collect();
     // A way that is known cuts the row that it leads through.
+    let least = evidence.parameters.labels_min_width;
     let uncut = uncut(views, rows);
     let whole = uncut.as_ref().map(|rows| seen(evidence, look, views, strips, rows, rows));
-    let narrow = whole.as_ref().map(|rows| narrowed::between_uprights(strips, rows, &placed, widest));
+    let narrow = whole.as_ref().map(|rows| narrowed::between_uprights(strips, rows, &placed, [least, widest]));
     let strips = narrow.as_deref().unwrap_or(strips);
     let mut through = Through::new(views, strips, seen(evidence, look, views, strips, rows, &reaching));
     // What leads past rows at a wall, or through a row that is a wall itself from one wall to another, though it is as wide as

@@ -27,7 +27,7 @@ impl Lead<'_> {
         wider([view.crossing(other, middle, self.strip.middle())[1]; 2], reach)
     }
 
-    /// True when the strip leads through the row, or past its end.
+    /// True when the strip goes on across the middle of the row's depth, be it past its end.
     pub fn is_across(&self) -> bool {
         let middle = f64::midpoint(self.row.across[0], self.row.across[1]);
         holds(self.strip.along, self.along([middle; 2])[0])

@@ -6,36 +6,43 @@ use super::corridors::Strip;
 use super::gates::leading_across;
 use super::lead::Lead;
 use super::rows::{DEPTH, Row, SAME};
-use super::sections::WIDTH;
 use super::seen::Seen;
 use super::turned::Turned;
 use crate::ends::{around, both, overlap, shared, wider};
 
 /// Racks leave no less of a way than this share of its width, or what they stand in is none along it.
 const LEFT: f64 = 0.5;
+/// Lines lie no farther within the uprights at a way's sides, both together, metres.
+const WIDER: f64 = 0.4;
 /// A rack stands across a direction when the cosine of the angle between is no more than this.
 const ASKEW: f64 = 0.05;
 
-/// The strips, each no wider than the uprights of that row leave it which leaves most, of those that it leads through between
-/// their ends; where they leave no way it is as it was. It is known where all of them lie, and none is wider than the widest.
-pub fn between_uprights(strips: &[Strip], rows: &[Seen], placed: &[Beside], widest: f64) -> Vec<Strip> {
+/// The strips, each from upright to upright of that row which leaves most, of those that it leads through between their ends;
+/// where they leave less than the least that a corridor is, it is as it was. It is known where all of them lie, and none is
+/// wider than the widest.
+pub fn between_uprights(strips: &[Strip], rows: &[Seen], placed: &[Beside], [least, widest]: [f64; 2]) -> Vec<Strip> {
     let mut most: Vec<Option<[f64; 2]>> = vec![None; strips.len()];
     for seen in rows {
         for n in leading_across(seen.views, placed, seen.row, widest) {
             let strip = &strips[n];
             let lead = Lead { views: seen.views, row: seen.row, strip };
             if lead.is_across() && lead.is_within() {
-                let left = seen.gap_about(strip.middle()).map_or(strip.across, |gap| shared(strip.across, gap));
+                let left = seen.gap_about(strip.middle()).map_or(strip.across, |gap| own_of(strip, gap));
                 let is_wider = |most: [f64; 2]| most[1] - most[0] >= left[1] - left[0];
                 most[n] = most[n].filter(|most| is_wider(*most)).or(Some(left));
             }
         }
     }
     let narrow = |(strip, most): (&Strip, Option<[f64; 2]>)| {
-        let across = most.filter(|[low, high]| high - low >= WIDTH.0).unwrap_or(strip.across);
+        let across = most.filter(|[low, high]| high - low >= least).unwrap_or(strip.across);
         Strip { across, ..strip.clone() }
     };
     strips.iter().zip(most).map(narrow).collect()
+}
+
+/// What of a gap between uprights is a strip's: all of it, if that is little wider.
+fn own_of(strip: &Strip, gap: [f64; 2]) -> [f64; 2] {
+    if gap[1] - gap[0] <= strip.width() + WIDER { gap } else { shared(strip.across, gap) }
 }
 
 /// The strips, each between the racks that reach into it, and from where to where it leads along; none becomes narrower

@@ -206,11 +206,8 @@ impl<'a> Columns<'a> {
     /// Between which two uprights a place lies in which none stands, along the row's middle.
     pub fn gap_about(&self, along: f64) -> Option<[f64; 2]> {
         let n = ((along - self.row.along[0]) / self.view.cell).max(0.0) as usize;
-        let (before, after) = self.stops.split_at_checked(n)?;
-        let is_upright = |stops: &bool| *stops;
-        let from = before.iter().rposition(is_upright)? + 1;
-        let to = n + after.iter().position(is_upright).filter(|free| *free > 0)?;
-        Some(wider([self.place(from), self.place(to)], BETWEEN * self.view.cell))
+        let gap = self.gaps(|from, to| (from..to).contains(&n)).first().copied()?;
+        Some(wider(gap, BETWEEN * self.view.cell))
     }
 
     /// How far from its lower end, or from its upper one, the first of it stands, metres, and the first that fills half of it:

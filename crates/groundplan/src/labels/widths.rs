@@ -26,9 +26,10 @@ const APART: f64 = 0.1;
 const FARTHER: f64 = 1.0;
 /// Chance does not open so many rows in line where hardly a place of them is.
 const IN_LINE: usize = 3;
-/// What leads through several rows is a way where no more such places would be expected by chance than the first, and an empty
-/// bay, if it is as wide as one, where more would be than the second.
-const EXPECTED: (f64, f64) = (0.01, 1.0);
+/// What leads through several rows is a way where fewer such places would be expected by chance.
+const SELDOM: f64 = 0.06;
+/// What is as wide as a bay is an empty one where more would be.
+const ANYWHERE: f64 = 0.4;
 /// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
 const WALL: f64 = 0.9;
 const TAKEN: f64 = 0.2;
@@ -130,8 +131,9 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             let is_barred = || bars.end_rows_before(n) && own.next.iter().all(goes_past);
             let is_past_ends = || own.rows.len() > 1 && !own.is_within && (!bars.reach_into(n) || is_barred());
             // What is as wide as a bay is one where chance would open rows so anyhow, whatever else is as wide.
+            let expected = LazyCell::new(|| empties::expected(&place, strips, n));
             let is_one_bay = || pitch().is_some_and(|pitch| width <= BAY * pitch);
-            let is_anywhere = || own.is_within && is_one_bay() && empties::expected(&place, strips, n) > EXPECTED.1;
+            let is_anywhere = || own.is_within && is_one_bay() && expected.is_some_and(|expected| expected > ANYWHERE);
             let is_as_wide = || known.have(width, pitch()) && !is_anywhere();
             let is_some = !own.next.is_empty()
                 && (!known.is_empty() || is_anywhere())
@@ -145,16 +147,14 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
                 Some(pitch) => !is_as_bays(width, pitch) || is_in_every_row() && bars.stand_beside_no_bays(n),
                 None => alone.is_longer_than_bays(own, width) || is_in_every_row(),
             };
-            // Through several rows in line, of which nothing else is as wide open, leads a way.
+            // Through several rows in line that chance would hardly open so leads a way.
             let is_in_line = || {
-                let is_seldom = || {
-                    own.racks >= IN_LINE && !empties::are_about(&place, strips, own, width)
-                        || empties::expected(&place, strips, n) < EXPECTED.0
-                };
+                let is_open_nowhere_else = || own.racks >= IN_LINE && !empties::are_about(&place, strips, own, width);
+                let is_seldom = || expected.is_some_and(|expected| expected < SELDOM) || is_open_nowhere_else();
                 own.is_within && own.racks > 1 && width >= WIDTH.0 && is_seldom()
             };
             let is_no_bay = || {
-                !*is_told_within && (is_way_of_its_row() || place.is_open_through(strips, own, width)) || is_in_line()
+                (!*is_told_within && (is_way_of_its_row() || place.is_open_through(strips, own, width))) || is_in_line()
             };
             let may_lie = || pitch().is_none() || may_be_bay();
             let is_as_bays_lie = || may_lie() && alone.is_as_bays_lie(&place, strips, own, width);
