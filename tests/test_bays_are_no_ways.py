@@ -345,6 +345,29 @@ def test_one_gap_in_each_row_without_bays_is_a_way_however_wide(widths: tuple[in
     assert ways_across(picture) == pytest.approx(expected, abs=0.15)
 
 
+@pytest.mark.parametrize("ways", [(3,), (3, 11)])
+@pytest.mark.parametrize("through", [4, 5])
+def test_ways_as_wide_as_bays_through_the_first_rows_in_line_are_ways_though_some_bays_are_empty(
+    through: int, ways: tuple[int, ...]
+) -> None:
+    # One or two bays of each row are empty besides, nowhere in line.
+    count, empty = 15, [{7, 9}, {1, 13}, {6, 8}, {5, 0}, {9}, {6}, {13}, {2}]
+    picture, rows = hall(8, 22, count * BAY)
+    for n, row in enumerate(rows):
+        full = [at not in empty[n] and not (n < through and at in ways) for at in range(count)]
+        fill(row, range(0, count * BAY, BAY), full)
+    assert len(ways_across(picture)) == 2 + len(ways)
+
+
+@pytest.mark.parametrize("width", [26, 30, 40])
+def test_a_way_is_no_wider_than_it_is_free_be_it_narrow(width: int) -> None:
+    bays = 12
+    picture, rows = hall(4, 22, bays * BAY + width)
+    for row in rows:
+        fill(row, [n * BAY + (width if n >= 5 else 0) for n in range(bays)], [True] * bays)
+    assert ways_across(picture)[0] == pytest.approx(width * RESOLUTION, abs=0.15)
+
+
 def test_a_rack_ends_where_a_way_leads_through_be_that_as_narrow_as_the_aisles_of_a_shop() -> None:
     # Five rows 0.8 m deep with 1.5 m between them, and as much between their halves.
     gap = 30

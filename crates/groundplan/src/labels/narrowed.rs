@@ -14,6 +14,8 @@ use crate::ends::{around, both, overlap, shared, wider};
 const LEFT: f64 = 0.5;
 /// Lines lie no farther within the uprights at a way's sides, both together, metres.
 const WIDER: f64 = 0.4;
+/// Two middles so near to each other are one, metres.
+const NEAR: f64 = 0.12;
 /// A rack stands across a direction when the cosine of the angle between is no more than this.
 const ASKEW: f64 = 0.05;
 
@@ -40,9 +42,12 @@ pub fn between_uprights(strips: &[Strip], rows: &[Seen], placed: &[Beside], [lea
     strips.iter().zip(most).map(narrow).collect()
 }
 
-/// What of a gap between uprights is a strip's: all of it, if that is little wider.
+/// What of a gap between uprights is a strip's: all of it, if that is little wider, about the strip's own middle, if that is no
+/// farther off: lines are known more closely than where uprights end.
 fn own_of(strip: &Strip, gap: [f64; 2]) -> [f64; 2] {
-    if gap[1] - gap[0] <= strip.width() + WIDER { gap } else { shared(strip.across, gap) }
+    let own = if gap[1] - gap[0] <= strip.width() + WIDER { gap } else { shared(strip.across, gap) };
+    let is_about = (f64::midpoint(own[0], own[1]) - strip.middle()).abs() <= NEAR;
+    if is_about { wider([strip.middle(); 2], (own[1] - own[0]) / 2.0) } else { own }
 }
 
 /// The strips, each between the racks that reach into it, and from where to where it leads along; none becomes narrower
