@@ -255,22 +255,23 @@ def test_a_way_as_wide_as_a_bay_leads_past_rows_that_end_at_bars_before_an_offic
     assert all(junction["type"] != "end" for junction in survey.of_kind("junction"))
 
 
-@pytest.mark.parametrize("spacing", [4.0, 5.0])
+@pytest.mark.parametrize("rows", [5, 12])
 @pytest.mark.parametrize("side", ["east", "west"])
-def test_the_way_along_the_wall_is_one_though_pillars_stand_in_it(side: str, spacing: float) -> None:
-    """Rows 1.2 m deep end 5.5 m before a wall; pillars of 0.5 m stand 2 m before that."""
-    rows, aisle = 12, 2.3
-    depth = aisle + (aisle + 1.2) * rows
+def test_the_way_along_the_wall_is_one_though_pillars_stand_in_it(side: str, rows: int) -> None:
+    """Rows 2.4 m deep end 5.5 m before a wall; pillars of 0.5 m stand 1.9 m before that, one every 2.5 m."""
+    aisle, rack = 3.0, 2.4
+    depth = aisle + (aisle + rack) * rows
     y, x = np.mgrid[-1.0 : depth + 1.0 : 0.05, -1.0:31.0:0.05]
     picture = np.full(x.shape, 205, dtype=np.uint8)
     picture[(x > -0.2) & (x < 30.2) & (y > -0.2) & (y < depth + 0.2)] = 0
     picture[(x > 0) & (x < 30) & (y > 0) & (y < depth)] = 254
     for row in range(rows):
-        low = aisle + (aisle + 1.2) * row
-        picture[(x > 3) & (x < 24.5) & (y > low) & (y < low + 1.2)] = 0
-    for at in np.arange(1.7, depth, spacing):
-        picture[(abs(x - 27.75) < 0.25) & (abs(y - at) < 0.25)] = 0
+        low = aisle + (aisle + rack) * row
+        picture[(x > 3) & (x < 24.5) & (y > low) & (y < low + rack)] = 0
+    for at in np.arange(1.7, depth, 2.5):
+        picture[(abs(x - 27.85) < 0.25) & (abs(y - at) < 0.25)] = 0
     survey = groundplan.survey(np.ascontiguousarray(picture if side == "east" else picture[:, ::-1]), resolution=0.05)
     widths = sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C"))
     assert widths == pytest.approx([3.0, 5.5], abs=0.2)
-    assert sorted(label["type"] for label in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 22
+    kinds = sorted(label["type"] for label in survey.of_kind("junction"))
+    assert kinds == ["L"] * 4 + ["T"] * (2 * rows - 2)

@@ -46,8 +46,8 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     let placed = placed(views, strips.iter().map(Strip::place));
     let widest = corridors::widest(strips);
     let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, &placed, widest, row)).collect();
-    // A way that is known cuts the row that it leads through.
     let least = evidence.parameters.labels_min_width;
+    // A way that is known cuts the row that it leads through.
     let uncut = uncut(views, rows);
     let whole = uncut.as_ref().map(|rows| seen(evidence, look, views, strips, rows, rows));
     let narrow = whole.as_ref().map(|rows| narrowed::between_uprights(strips, rows, &placed, [least, widest]));

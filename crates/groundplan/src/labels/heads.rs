@@ -6,6 +6,7 @@ use super::corridors::Strip;
 use super::gates::square_to;
 use super::known::{Known, Led};
 use super::look::Look;
+use super::pillared;
 use super::rows::Row;
 use super::sections::Columns;
 use super::shut;
@@ -53,7 +54,8 @@ pub fn with(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
                 for Head { led, free } in heads.ways(&chain) {
                     let end_in = |way: &Strip| free.iter().filter(|free| way.width() - **free >= APART).count();
                     let least = free.len().div_ceil(ENDING).max(ROWS);
-                    known.narrow(&led.way, |way| end_in(way) >= least);
+                    // Pillars that stand in it are no ends of rows.
+                    known.narrow(&led.way, |way| end_in(way) >= least && !pillared::stand_in(other, way));
                     known.add(led);
                 }
             }

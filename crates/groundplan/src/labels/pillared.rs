@@ -3,14 +3,15 @@
 use super::beside::placed;
 use super::corridors::Strip;
 use super::rows::SAME;
-use super::runs::runs;
+use super::runs::{length, runs};
 use super::turned::Turned;
-use crate::ends::{overlap, sorted};
+use crate::ends::{overlap, sorted, wider};
 use crate::parameters::Parameters;
+use std::ops::{Range, RangeInclusive};
 
-/// So many pillars at least, no longer than this along the way, metres, over no more than this share of it.
+/// So many pillars at least, so long along the way, metres, over no more than this share of it: racks' legs are shorter.
 const PILLARS: usize = 3;
-const LONGEST: f64 = 1.0;
+const LENGTH: RangeInclusive<f64> = 0.35..=1.0;
 const SHARE: f64 = 0.25;
 /// Behind them one walks over so much floor at least, metres, of which no more than this share is not free.
 const BEHIND: f64 = 0.8;
@@ -65,10 +66,23 @@ fn behind_pillars(view: &Turned, strip: &Strip, side: usize, most: f64) -> Optio
         return None;
     }
     let [low, high] = between(-view.cell, wall - BEHIND);
+    are_pillars(view, columns, low, high).then(|| at(wall))
+}
+
+/// True when pillars stand in a line in a strip, and nothing else: on both their sides one walks past them.
+pub fn stand_in(view: &Turned, strip: &Strip) -> bool {
+    let (columns, [low, high]) = (view.columns(strip.along), wider(strip.across, -view.cell));
+    let is_clear = |low: f64, high: f64| view.mean_blocked(columns.clone(), low, high) <= CLEAR;
+    high - low > 2.0 * BEHIND
+        && is_clear(low, low + BEHIND)
+        && is_clear(high - BEHIND, high)
+        && are_pillars(view, columns, low + BEHIND, high - BEHIND)
+}
+
+/// True when what stands in a lane is several things, all as long as pillars, and few.
+fn are_pillars(view: &Turned, columns: Range<usize>, low: f64, high: f64) -> bool {
     let stands: Vec<bool> = view.some_blocked(columns, low, high).into_iter().map(|share| share > 0.0).collect();
     let pillars = runs(&stands, true);
-    let is_pillar = |&(from, to): &(usize, usize)| (to - from) as f64 * view.cell <= LONGEST;
-    let taken = stands.iter().filter(|stands| **stands).count() as f64;
-    let are_pillars = pillars.len() >= PILLARS && pillars.iter().all(is_pillar) && taken <= SHARE * stands.len() as f64;
-    are_pillars.then(|| at(wall))
+    let is_pillar = |&(from, to): &(usize, usize)| LENGTH.contains(&((to - from) as f64 * view.cell));
+    pillars.len() >= PILLARS && pillars.iter().all(is_pillar) && length(pillars) as f64 <= SHARE * stands.len() as f64
 }
