@@ -501,3 +501,41 @@ def test_what_is_open_of_solid_rows_of_two_racks_is_a_way_though_not_each_has_as
         assert min(np.hypot(*np.subtract(at, meet)) for at in junctions) < 0.3
     across = [np.ptp(way["axis"], axis=0) for way in found.of_kind("corridor")]
     assert sum(y > x and y < depth + 3 for x, y in across) == sum(len(own) for own in openings)
+
+
+@pytest.mark.parametrize("gaps", [[[3, 9], [5], [8, 2], []], [[3], [10], [], [6]], [[4, 12], [], [2, 9], []]])
+def test_what_both_of_two_racks_leave_open_where_one_alone_seldom_is_is_a_way_though_some_rows_have_none(
+    gaps: list[list[int]],
+) -> None:
+    # Rows of two racks of 1 m back to back, 14 bays of 2.7 m long; here and there a bay of one rack is empty.
+    bay, aisle, end = 54, 60, 72
+    picture = walled(2 * end + 14 * bay, 5 * aisle + 8 * DEPTH)
+    for row, own in enumerate(gaps):
+        low, left = 20 + aisle + row * (aisle + 2 * DEPTH), 20 + end
+        picture[low : low + 2 * DEPTH, left : left + 14 * bay] = 0
+        for at in own:
+            picture[low : low + 2 * DEPTH, left + at * bay : left + (at + 1) * bay] = 254
+        for rack, at in {0: [(0, 6)], 2: [(1, 11)], 3: [(0, 3)]}.get(row, []):
+            picture[low + rack * DEPTH :][:DEPTH, left + at * bay : left + (at + 1) * bay] = 254
+    found = groundplan.survey(picture, resolution=RESOLUTION)
+    across = [way["width"] for way in found.of_kind("corridor") if way["name"].startswith("C")]
+    assert sorted(across) == pytest.approx([2.7] * sum(map(len, gaps)) + [3.6] * 2, abs=0.15)
+
+
+@pytest.mark.parametrize(
+    ("gaps", "are_ways"),
+    [([[200], [], [350], []], True), ([[], [150], [300], [220]], True), ([[200], [], [], []], False)],
+)
+def test_gaps_of_rows_that_are_closed_everywhere_else_are_ways_though_narrower_than_that_through_all(
+    gaps: list[list[int]], are_ways: bool
+) -> None:
+    # Solid rows of 1.1 m by 45 m with a way of 3.8 m through all of them, and gaps of 3 m: one by itself may be a bay.
+    picture = walled(1048, 5 * 70 + 4 * 22)
+    for row, own in enumerate(gaps):
+        low = 90 + row * 92
+        picture[low : low + 22, 94:994] = 0
+        for left, right in [(694, 770), *((94 + at, 154 + at) for at in own)]:
+            picture[low : low + 22, left:right] = 254
+    found = groundplan.survey(picture, resolution=RESOLUTION)
+    across = [way["width"] for way in found.of_kind("corridor") if way["name"].startswith("C")]
+    assert sorted(across) == pytest.approx([3.0] * sum(map(len, gaps)) * are_ways + [3.8] * 3, abs=0.15)

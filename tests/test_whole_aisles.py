@@ -216,3 +216,43 @@ def test_where_a_row_ends_before_the_wall_the_aisles_beside_it_lead_round_its_he
     survey = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION, origin=(0, 0))
     ends = sorted(label["at"][1] for label in survey.of_kind("junction") if label["type"] == "end")
     assert ends == pytest.approx([2.1, 10.5, 13.3], abs=0.3)
+
+
+def among_goods(goods: list[tuple[int, int]], aisle: int = 76) -> npt.NDArray[np.uint8]:
+    """A hall of two blocks of three racks of 8 m by 2 m, 5 m apart; in an aisle of the second one goods of 1.2 m by 1 m
+    stand along one face (0) or the other (1), so many pixels from the block's end."""
+    picture = np.full((40 + 3 * 40 + 4 * aisle, 580), 205, np.uint8)
+    picture[18:-18, 18:-18] = 0
+    picture[20:-20, 20:-20] = 254
+    for low in (20 + aisle + rack * (40 + aisle) for rack in range(3)):
+        for left in (80, 340):
+            picture[low : low + 40, left : left + 160] = 0
+            picture[low + 2 : low + 38, left + 2 : left + 158] = 205
+    for face, at in goods:
+        low = 60 + aisle + face * (aisle - 20)
+        picture[low : low + 20, 340 + at : 364 + at] = 0
+        picture[low + 2 : low + 18, 342 + at : 362 + at] = 205
+    return np.rot90(picture).copy()
+
+
+@pytest.mark.parametrize(
+    "goods",
+    [
+        [(0, 2), (1, 36), (1, 86), (0, 110)],
+        [(1, 12), (0, 12), (0, 34), (1, 80), (0, 108)],
+        [(0, 10), (1, 35), (0, 110), (1, 117)],
+    ],
+)
+def test_an_aisle_leads_on_past_goods_at_both_its_sides(goods: list[tuple[int, int]]) -> None:
+    found = groundplan.survey(among_goods(goods), resolution=RESOLUTION)
+    assert sorted(junction["type"] for junction in found.of_kind("junction")) == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
+    aisles = [way for way in found.of_kind("corridor") if way["name"].startswith("A")]
+    assert [way["width"] for way in aisles] == pytest.approx([3.8] * 4, abs=0.15)
+    assert [np.ptp(way["axis"], axis=0).max() for way in aisles] == pytest.approx([24.0] * 4, abs=0.3)
+
+
+def test_an_aisle_ends_where_goods_on_both_sides_leave_no_way() -> None:
+    goods = [(0, 10), (1, 20), (1, 86), (0, 110)]
+    found = groundplan.survey(among_goods(goods, aisle=52), resolution=RESOLUTION)
+    assert len(found.of_kind("corridor")) == 7
+    assert sorted(junction["type"] for junction in found.of_kind("junction")).count("X") == 1

@@ -18,10 +18,12 @@ const ROWS: usize = 2;
 const UNLIKELY: f64 = 0.01;
 /// The same where each of the rows is open at as many, which chance seldom makes.
 const UNLIKELY_IN_FULL: f64 = 0.1;
+/// Where not each of the rows is open, chance makes fewer such places than this in all of them.
+const EXPECTED: f64 = 0.1;
 /// What is open of a half for less, metres, is between its goods.
 const SHELF: f64 = 0.5;
 /// Something stands along so much of the faces of solid rows, and no more than so much of their halves is open.
-const SOLID: (f64, f64) = (0.95, 0.01);
+const SOLID: (f64, f64) = (0.9, 0.01);
 /// One or two places at which they are open may be shelves that are empty.
 const SEVERAL: usize = 3;
 
@@ -30,15 +32,17 @@ pub fn is_double(row: &Row) -> bool {
     row.depth() >= TWO
 }
 
-/// True when each of several rows side by side that are of two racks is open at a place of a width, and all are at as many as
-/// they would hardly be by chance if each rack were empty where it is, whatever the other is.
+/// True when several of some rows side by side that are of two racks are open at places of a width, and all are at as many as
+/// they would hardly be by chance if each rack were empty where it is, whatever the other is: where one is open nowhere,
+/// hardly any such place is expected at all.
 pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Shelves>, width: f64) -> bool {
-    let (mut half_open, mut open, mut places) = (0, 0, 0.0);
+    let (mut half_open, mut open, mut open_rows, mut places) = (0, 0, 0, 0.0);
     let is_long = |shelves: &&Shelves| is_double(&shelves.row) && shelves.row.length() >= LONG * width;
     let rows: Vec<&Shelves> = rows.filter(is_long).collect();
     if rows.len() < ROWS {
         return false;
     }
+    let count = rows.len();
     let least = (AS_WIDE * width / view.cell).ceil().max(1.0) as usize;
     for shelves in rows {
         let as_wide = |runs: &[Run]| {
@@ -46,17 +50,18 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Shelves>, widt
             within.map(|(from, to)| (to - from) / least).sum::<usize>()
         };
         let own = as_wide(&shelves.open());
-        if own == 0 {
-            return false;
-        }
+        open_rows += usize::from(own > 0);
         open += own;
         half_open += shelves.halves.iter().map(|half| as_wide(half).saturating_sub(own)).sum::<usize>();
         places += shelves.row.length() / width;
     }
-    is_more_than_chance(open, half_open as f64, places)
+    let expected = expected(open, half_open as f64, places);
+    open_rows >= ROWS
+        && chance(open, expected) < UNLIKELY
+        && (open_rows == count || open >= SEVERAL && expected < EXPECTED)
 }
 
-/// Rows side by side but for where they are open at a width.
+/// Rows side by side but for some places at which they are open.
 pub struct Rest<'a> {
     view: &'a Turned,
     rows: Vec<Elsewhere<'a>>,
@@ -67,8 +72,18 @@ pub struct Rest<'a> {
 }
 
 impl<'a> Rest<'a> {
+    /// But for where they are open at a width.
     pub fn new(view: &'a Turned, rows: impl Iterator<Item = &'a Shelves>, width: f64) -> Self {
-        let [least, most] = [AS_WIDE * width / view.cell, width / AS_WIDE / view.cell + ENDS as f64];
+        Self::but_for(view, rows, width, width / AS_WIDE)
+    }
+
+    /// But for where they are open at a width and at wider ones.
+    pub fn but_for_wider(view: &'a Turned, rows: impl Iterator<Item = &'a Shelves>, width: f64) -> Self {
+        Self::but_for(view, rows, width, f64::INFINITY)
+    }
+
+    fn but_for(view: &'a Turned, rows: impl Iterator<Item = &'a Shelves>, width: f64, widest: f64) -> Self {
+        let [least, most] = [AS_WIDE * width / view.cell, widest / view.cell + ENDS as f64];
         let as_wide = |length: usize| (least..=most).contains(&(length as f64));
         let rows: Vec<Elsewhere> = rows.map(|shelves| shelves.elsewhere(view, as_wide)).collect();
         let free = rows.iter().map(|row| row.free(SHELF / view.cell)).sum::<usize>() as f64;
@@ -78,12 +93,15 @@ impl<'a> Rest<'a> {
 
     /// True when the rows are of two racks and stand solid but for several places, however many each has.
     pub fn is_solid(&self) -> bool {
-        let stands = || self.rows.iter().map(|row| row.stands(self.view)).sum::<usize>() as f64;
-        self.halves > 0.0
-            && self.rows.iter().map(|row| row.open).sum::<usize>() >= SEVERAL
-            && self.free <= SOLID.1 * self.halves
+        self.rows.iter().map(|row| row.open).sum::<usize>() >= SEVERAL
             && self.rows.iter().all(|row| is_double(&row.shelves.row))
-            && stands() >= SOLID.0 * self.halves
+            && self.is_closed()
+    }
+
+    /// True when next to nothing of the rows is open but for those places, and something stands all along their faces.
+    pub fn is_closed(&self) -> bool {
+        let stands = || self.rows.iter().map(|row| row.stands(self.view)).sum::<usize>() as f64;
+        self.halves > 0.0 && self.free <= SOLID.1 * self.halves && stands() >= SOLID.0 * self.halves
     }
 
     /// True when each row has as many places, as where a way leads through each, and so little else of their halves is open
@@ -97,12 +115,13 @@ impl<'a> Rest<'a> {
     }
 }
 
-/// True when both racks would hardly be empty at so many of all places by chance, where one of them is at so many more.
-fn is_more_than_chance(open: usize, half_open: f64, places: f64) -> bool {
+/// At how many of all places both racks are expected to be empty by chance, where both are at so many and one of them is at so
+/// many more.
+fn expected(open: usize, half_open: f64, places: f64) -> f64 {
     // How often the one is empty where the other is not.
     let shut = (places - open as f64 - half_open).max(0.0);
     let share = (half_open + 0.5) / (half_open + 2.0 * shut + 1.0);
-    chance(open, places * share * share) < UNLIKELY
+    places * share * share
 }
 
 /// How likely so many or more are where so many are expected (Poisson's distribution).
@@ -131,8 +150,9 @@ mod tests {
 
     #[test]
     fn where_one_of_two_racks_is_seldom_empty_both_are_not_by_chance() {
-        assert!(is_more_than_chance(2, 2.0, 40.0));
-        assert!(!is_more_than_chance(2, 30.0, 40.0));
-        assert!(!is_more_than_chance(0, 2.0, 40.0));
+        let is_more_than_chance = |open, half_open| chance(open, expected(open, half_open, 40.0)) < UNLIKELY;
+        assert!(is_more_than_chance(2, 2.0));
+        assert!(!is_more_than_chance(2, 30.0));
+        assert!(!is_more_than_chance(0, 2.0));
     }
 }

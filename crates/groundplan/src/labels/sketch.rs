@@ -21,6 +21,7 @@ use super::look::Look;
 use super::meeting::Meeting;
 use super::narrowed;
 use super::panes;
+use super::past_goods;
 use super::pillared;
 use super::quarter;
 use super::racks;
@@ -220,6 +221,7 @@ impl Plan {
         found.retain(|way| !is_on(way));
         let found = rows::without_lanes(views, crossed::without_bays(evidence, look, views, found));
         let found = pillared::widened(views, &slots::without(views, found), evidence.parameters);
+        let found = past_goods::led_on(views, &found);
         let threads = evidence.threads;
         let standing = Standing::new(views, evidence.recall, threads);
         // What was too short to stay bars no way whose sides are no lines, but tells how wide that is.

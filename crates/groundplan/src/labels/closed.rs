@@ -1,0 +1,69 @@
+//! Rows of which nothing is open but for gaps from aisle to aisle: where these lie as no bays can they are ways.
+
+use super::corridors::Strip;
+use super::passing::{Passing, Place};
+use super::runs::outside;
+use super::seldom::{AS_WIDE, Rest};
+use super::widths::are_alike;
+use std::collections::BTreeSet;
+
+/// Fewer rows tell nothing.
+const ROWS: usize = 3;
+/// One gap by itself may be an empty bay of a hall in which no others are.
+const SEVERAL: usize = 2;
+/// From one bay to the next there is no more between them than this, metres, tried in such steps.
+const POST: f64 = 0.3;
+const STEP: f64 = 0.01;
+/// What stands between gaps is known to so much, metres.
+const OFF: f64 = 0.2;
+
+/// True when several ways as wide as one lead through some of the rows of its part of a place between their ends, next to
+/// nothing of these rows is open elsewhere, and what stands beside the gaps is no whole number of bays as wide.
+pub fn is_way(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> bool {
+    let Some(first) = place.first_of(own).filter(|_| own.is_within) else { return false };
+    let part = place.rows_with(first);
+    let is_like = |way: &usize| {
+        let passing = &place.passing[*way];
+        passing.is_within && !passing.is_whole() && are_alike(strips[*way].width(), width)
+    };
+    let alike: BTreeSet<usize> = part.iter().flat_map(|&row| &place.through[row]).copied().filter(is_like).collect();
+    let view = place.views[0];
+    let rest = || Rest::but_for_wider(view, part.iter().map(|&row| place.shelves(row)), width);
+    if part.len() < ROWS || alike.len() < SEVERAL || !rest().is_closed() {
+        return false;
+    }
+    let least = AS_WIDE * width / view.cell;
+    // What is open up to a row's end is before it, however short.
+    let standing = part.iter().flat_map(|&row| {
+        let shelves = place.shelves(row);
+        let mut open = shelves.open();
+        open.retain(|&(from, to)| shelves.is_end((from, to)) || (to - from) as f64 >= least);
+        let has_gaps = open.iter().any(|&run| !shelves.is_end(run));
+        if has_gaps { outside(&[(0, shelves.count())], &open) } else { Vec::new() }
+    });
+    let lengths: Vec<f64> = standing.map(|(from, to)| (to - from) as f64 * view.cell).collect();
+    let widths: f64 = alike.iter().map(|&way| strips[way].width()).sum();
+    !are_bays(&lengths, widths / alike.len() as f64)
+}
+
+/// True when all of some lengths may be whole numbers of bays of a width with what stands between them, metres.
+fn are_bays(lengths: &[f64], width: f64) -> bool {
+    let is_whole = |length: f64, pitch: f64| (length - (length / pitch).round() * pitch).abs() <= OFF;
+    (0..=(POST / STEP) as usize).any(|n| {
+        let pitch = width + n as f64 * STEP;
+        lengths.iter().all(|&length| is_whole(length, pitch))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_stands_between_empty_bays_is_a_whole_number_of_bays() {
+        // Bays of 2.7 m, of which 0.1 m is a post.
+        assert!(are_bays(&[2.8, 8.2, 16.3, 27.1], 2.6));
+        assert!(!are_bays(&[2.8, 8.2, 17.5, 27.1], 2.6));
+        assert!(!are_bays(&[9.6, 21.5], 3.0));
+    }
+}
