@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from zoo import Picture, walled
+from zoo import UNKNOWN, Picture, walled
 
 import groundplan
 
@@ -169,3 +169,20 @@ def test_a_way_does_not_lead_on_through_a_row_behind_one_that_is_shut() -> None:
     middle = (lefts[1] - CROSS / 2) * RESOLUTION
     across = [way for way in survey.of_kind("corridor") if abs(np.mean(way["axis"], axis=0)[0] - middle) < 0.5]
     assert len([way for way in across if way["width"] > 3.3]) == 1
+
+
+@pytest.mark.parametrize(("hidden", "door"), [(12, False), (20, False), (0, True)])
+def test_an_aisle_ends_at_a_wall_of_which_the_middle_was_not_seen_and_not_at_a_door_in_it(
+    hidden: int, door: bool
+) -> None:
+    # 3.4 m wide, from a way across to a wall; before the wall's middle so much was not seen, or floor leads through.
+    picture = np.full((380, 520), UNKNOWN, np.uint8)
+    for top, left, bottom, right in ((20, 20, 84, 500), (82, 224, 344, 296)):
+        picture[top:bottom, left:right] = 0
+    picture[22:82, 22:498] = picture[80:342, 226:294] = 254
+    picture[342 - hidden : 346, 240:280] = 254 if door else 205
+    picture[346:, :] = UNKNOWN
+    found = groundplan.survey(picture, resolution=RESOLUTION)
+    ends = [junction["at"] for junction in found.of_kind("junction") if junction["type"] == "end"]
+    low = [y for x, y in ends if abs(x - 13.0) < 1]
+    assert low == ([] if door else [pytest.approx(1.9, abs=0.15)])

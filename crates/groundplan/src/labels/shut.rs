@@ -21,6 +21,10 @@ const SHUT: f64 = 1.0;
 /// What closes it is this deep, metres, and lies across this share of its width.
 const DEEP: f64 = 0.4;
 const ACROSS: f64 = 0.5;
+/// Where the middle was not seen so much of what lies at each of its sides is wall, without what belongs to these, metres.
+const SEEN: f64 = 0.7;
+const CORNER: f64 = 0.15;
+const BEFORE: (f64, f64) = (0.1, 0.3);
 /// Jambs stand within its sides by more than so much, metres, across so much of the rest.
 const JAMBS: (f64, f64) = (0.1, 0.25);
 /// Where it goes on over what was not seen, from so far beyond its end to so far, metres, more than this share is no floor.
@@ -62,7 +66,12 @@ pub fn is_unseen(views: &[Turned], strip: &Strip, side: usize) -> bool {
 /// True when something stands across a strip in a column, or in one beside it.
 pub fn is_shut_at(view: &Turned, strip: &Strip, column: usize) -> bool {
     let last = view.size[0] - 1;
-    is_hit(view, column.saturating_sub(THIN as usize).min(last)..(column + THIN as usize).min(last) + 1, inner(strip))
+    is_hit(
+        view,
+        column.saturating_sub(THIN as usize).min(last)..(column + THIN as usize).min(last) + 1,
+        inner(strip),
+        ACROSS,
+    )
 }
 
 /// Where a strip ends: at what closes it near one of its ends, or no further off than bays are long, where one of its sides
@@ -104,15 +113,38 @@ pub fn closed(view: &Turned, strip: &Strip, side: usize, look: f64) -> Option<f6
     // Of one that is thinner than the samples are apart hardly any lies on a wall, and not all of a thin one may be hit.
     let is_wall = across >= ACROSS
         || deep.clone().any(|c| view.is_barred(c as usize, low, high))
-        || deep.clone().any(|c| is_hit(view, c as usize..(c + THIN).min(last + 1) as usize, [low, high]));
-    is_wall.then(|| view.along(first as usize) + if sign < 0.0 { view.cell } else { 0.0 })
+        || deep.clone().any(|c| is_hit(view, c as usize..(c + THIN).min(last + 1) as usize, [low, high], ACROSS));
+    let wall = if is_wall { first } else { hidden(view, strip, side, first)? };
+    Some(view.along(wall as usize) + if sign < 0.0 { view.cell } else { 0.0 })
 }
 
-/// True when something stands in some columns over as much of the way across as a wall does, be it ever so thin.
-fn is_hit(view: &Turned, columns: Range<usize>, [low, high]: [f64; 2]) -> bool {
+/// Where a wall stands that comes from both sides of a strip near where it is closed, if what lies before its middle was not
+/// seen: between jambs floor does.
+fn hidden(view: &Turned, strip: &Strip, side: usize, closed: i64) -> Option<i64> {
+    let ([low, high], [from, to]) = (wider(strip.across, -CORNER), inner(strip));
+    let (sign, cells) = (sign(side), |metres: f64| (metres / view.cell).ceil() as i64);
+    let last = view.size[0] as i64 - 1;
+    // Not quite square to the strip it shows in several columns.
+    let begins = (closed - cells(DEEP) * sign as i64).clamp(0, last);
+    let columns = (0..=cells(DEEP) + cells(SHUT)).map(|step| begins + step * sign as i64);
+    let columns = columns.filter(|c| (0..=last).contains(c));
+    let first = |across: [f64; 2]| {
+        let up_to = |c: i64| begins.min(c) as usize..begins.max(c) as usize + 1;
+        columns.clone().find(|&c| is_hit(view, up_to(c), across, SEEN))
+    };
+    let (one, two) = (first([low, from])?, first([to, high])?);
+    let wall = if sign < 0.0 { one.max(two) } else { one.min(two) };
+    let before = sorted([BEFORE.0, BEFORE.1].map(|metres| view.along(wall as usize) - sign * metres));
+    let third = wider([strip.middle(); 2], strip.width() / 6.0);
+    ((one - two).abs() <= cells(DEEP) && view.mean_blocked(view.columns(before), third[0], third[1]) > FLOOR)
+        .then_some(wall)
+}
+
+/// True when something stands in some columns over so much of the way across, be it ever so thin.
+fn is_hit(view: &Turned, columns: Range<usize>, [low, high]: [f64; 2], share: f64) -> bool {
     let count = ((high - low) / view.cell).round().max(1.0);
     let place = |n: usize| low + (high - low) * n as f64 / count;
     let stands =
         |n: &usize| view.some_occupied(columns.clone(), place(*n), place(n + 1)).iter().any(|share| *share > 0.0);
-    (0..count as usize).filter(stands).count() as f64 >= ACROSS * count
+    (0..count as usize).filter(stands).count() as f64 >= share * count
 }
