@@ -57,8 +57,20 @@ pub fn across(view: &Turned, across: [f64; 2], range: Range<usize>) -> Bits {
 
 /// The columns in which such a wall stands on both sides of a strip, which leads through a door in it.
 pub fn doors(view: &Turned, sides: [[f64; 2]; 2], range: Range<usize>) -> Bits {
-    let [one, two] = sides.map(|[low, high]| view.barred_where(range.clone(), low, high, |barred| barred > BESIDE));
+    let [one, two] = beside(view, sides, &range);
     thin(view, THICK, &(&one & &two), range.len())
+}
+
+/// [`across`] of columns in which such a wall goes on beyond a side of the strip: goods do not.
+pub fn beyond_a_side(view: &Turned, strip: [f64; 2], sides: [[f64; 2]; 2], range: Range<usize>) -> Bits {
+    let [mut one, two] = beside(view, sides, &range);
+    one |= &two;
+    &across(view, strip, range) & &one
+}
+
+/// At which columns a wall stands beside a strip, on each side.
+fn beside(view: &Turned, sides: [[f64; 2]; 2], range: &Range<usize>) -> [Bits; 2] {
+    sides.map(|[low, high]| view.barred_where(range.clone(), low, high, |barred| barred > BESIDE))
 }
 
 /// Columns of what is so thick, metres.

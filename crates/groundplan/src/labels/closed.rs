@@ -11,8 +11,11 @@ use std::collections::BTreeSet;
 const ROWS: usize = 3;
 /// One gap by itself may be an empty bay of a hall in which no others are.
 const SEVERAL: usize = 2;
-/// From one bay to the next there is no more between them than this, metres, tried in such steps.
-const POST: f64 = 0.3;
+/// Of more than so many for each row some are empty bays, and which is not told.
+const MANY: f64 = 1.25;
+/// Bays recur by so much less than a gap is wide, metres, where goods stand back from it, to so much more, where posts stand
+/// between them, tried in such steps.
+const RECUR: (f64, f64) = (-0.35, 0.3);
 const STEP: f64 = 0.01;
 /// What stands between gaps is known to so much, metres.
 const OFF: f64 = 0.2;
@@ -29,7 +32,8 @@ pub fn is_way(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> boo
     let alike: BTreeSet<usize> = part.iter().flat_map(|&row| &place.through[row]).copied().filter(is_like).collect();
     let view = place.views[0];
     let rest = || Rest::but_for_wider(view, part.iter().map(|&row| place.shelves(row)), width);
-    if part.len() < ROWS || alike.len() < SEVERAL || !rest().is_closed() {
+    let is_count = (SEVERAL as f64..=MANY * part.len() as f64).contains(&(alike.len() as f64));
+    if part.len() < ROWS || !is_count || !rest().is_closed() {
         return false;
     }
     let least = AS_WIDE * width / view.cell;
@@ -49,8 +53,8 @@ pub fn is_way(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> boo
 /// True when all of some lengths may be whole numbers of bays of a width with what stands between them, metres.
 fn are_bays(lengths: &[f64], width: f64) -> bool {
     let is_whole = |length: f64, pitch: f64| (length - (length / pitch).round() * pitch).abs() <= OFF;
-    (0..=(POST / STEP) as usize).any(|n| {
-        let pitch = width + n as f64 * STEP;
+    (0..=((RECUR.1 - RECUR.0) / STEP) as usize).any(|n| {
+        let pitch = width + RECUR.0 + n as f64 * STEP;
         lengths.iter().all(|&length| is_whole(length, pitch))
     })
 }
@@ -63,6 +67,7 @@ mod tests {
     fn what_stands_between_empty_bays_is_a_whole_number_of_bays() {
         // Bays of 2.7 m, of which 0.1 m is a post.
         assert!(are_bays(&[2.8, 8.2, 16.3, 27.1], 2.6));
+        assert!(are_bays(&[21.6, 8.1, 16.2, 43.2, 5.4], 2.75));
         assert!(!are_bays(&[2.8, 8.2, 17.5, 27.1], 2.6));
         assert!(!are_bays(&[9.6, 21.5], 3.0));
     }

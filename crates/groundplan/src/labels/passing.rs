@@ -65,9 +65,8 @@ impl Place<'_> {
         let Some(first) = self.first_of(own) else { return false };
         let part = self.rows_with(first);
         let rows = || part.iter().map(|&row| self.shelves(row));
-        let may_be_bay = || {
-            self.pitch_of(own).is_some_and(|pitch| is_as_bays(width, pitch)) || !self.lead_through_all(&part).is_empty()
-        };
+        let is_as_bays = || self.pitch_of(own).is_some_and(|pitch| is_as_bays(width, pitch));
+        let may_be_bay = || is_as_bays() || !self.lead_through_all(&part).is_empty();
         let is_full = || {
             let rest = Rest::new(self.views[0], rows(), width);
             rest.is_full() || rest.is_solid() && !may_be_bay()
@@ -75,7 +74,7 @@ impl Place<'_> {
         own.is_within && is_full()
             || own.rows.iter().all(is_double)
                 && self.is_as_aisles(strips, own, width)
-                && seldom::are_open(self.views[0], rows(), width)
+                && seldom::are_open(self.views[0], rows(), width, is_as_bays)
     }
 
     /// True when a width is not much less than that of the aisles beside the rows that something passes through.

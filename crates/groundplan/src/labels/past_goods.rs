@@ -3,7 +3,8 @@
 use super::barriers;
 use super::beside::{Beside, placed};
 use super::columns::BAY;
-use super::corridors::{ASKEW, Strip};
+use super::corridors::{ASKEW, Strip, UNTOLD};
+use super::joined;
 use super::pieces::BESIDE;
 use super::rows::SAME;
 use super::shut;
@@ -22,27 +23,27 @@ const CROSSING: f64 = 4.0;
 const BEYOND: f64 = 0.8;
 /// Goods narrow it where so much of a column is not free.
 const NARROWED: f64 = 0.1;
-/// And no farther than this, metres.
+/// It is led on no farther than this, metres.
 const FARTHEST: f64 = 60.0;
 /// So near to where racks end beside it, metres, lies the way that it leads to, over floor that is free but for this share.
 const MOUTH: f64 = 6.0;
 const CLUTTER: f64 = 0.1;
 
-/// The strips, each as far on as racks stand along both its sides and one gets past what stands between, up to another way.
-pub fn led_on(views: &[Turned], strips: &[Strip]) -> Vec<Strip> {
-    let placed = placed(views, strips.iter().map(Strip::place));
-    let longer = |(n, strip): (usize, &Strip)| {
-        let mut longer = strip.clone();
-        if !strip.bays && !strip.is_short() {
-            for side in [0, 1] {
-                if let Some(end) = (On { views, strips, placed: &placed, n, side }).end() {
-                    longer.along[side] = end;
-                }
-            }
+/// The strips, each as far on as racks stand along both its sides and one gets past what stands between, up to another way;
+/// pieces that come to meet are one, no narrower than the least that a corridor is.
+pub fn led_on(views: &[Turned], strips: Vec<Strip>, least: f64) -> Vec<Strip> {
+    let mut placed = placed(views, strips.iter().map(Strip::place));
+    let mut longer = strips.clone();
+    for (n, side) in (0..strips.len()).flat_map(|n| [(n, 0), (n, 1)]) {
+        if strips[n].bays || strips[n].is_short() {
+            continue;
         }
-        longer
-    };
-    strips.iter().enumerate().map(longer).collect()
+        if let Some(end) = (On { views, strips: &longer, placed: &placed, n, side }).end() {
+            (longer[n].along[side], longer[n].held[side]) = (end, UNTOLD[side]);
+            placed[longer[n].direction].add(n, longer[n].along, longer[n].across);
+        }
+    }
+    if longer == strips { strips } else { joined::join(views, longer, least) }
 }
 
 /// What lies beyond one end of a strip.
@@ -91,6 +92,7 @@ impl On<'_> {
             if sided.get(outwards) {
                 (count, held, bare) = (n + 1, held + 1, 0);
             } else if crossed.get(outwards) {
+                bare = 0;
                 counts.extend((held >= least).then_some(count));
             } else if bare < gap {
                 bare += 1;
@@ -109,6 +111,7 @@ impl On<'_> {
         let [low, high] = wider(strip.across, -SAME);
         view.blocked_where(on.clone(), low, high, |share| share > NARROWED).any()
             && barriers::stops(view, strip.across, on.clone()).is_empty()
+            && !barriers::beyond_a_side(view, strip.across, beyond(strip.across), on.clone()).any()
             && !barriers::doors(view, beyond(strip.across), on).any()
     }
 

@@ -34,8 +34,13 @@ pub fn is_double(row: &Row) -> bool {
 
 /// True when several of some rows side by side that are of two racks are open at places of a width, and all are at as many as
 /// they would hardly be by chance if each rack were empty where it is, whatever the other is: where one is open nowhere,
-/// hardly any such place is expected at all.
-pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Shelves>, width: f64) -> bool {
+/// hardly any such place is expected at all. Where no rack is empty alone both may be emptied together, bay by bay.
+pub fn are_open<'a>(
+    view: &Turned,
+    rows: impl Iterator<Item = &'a Shelves>,
+    width: f64,
+    may_be_bay: impl FnOnce() -> bool,
+) -> bool {
     let (mut half_open, mut open, mut open_rows, mut places) = (0, 0, 0, 0.0);
     let is_long = |shelves: &&Shelves| is_double(&shelves.row) && shelves.row.length() >= LONG * width;
     let rows: Vec<&Shelves> = rows.filter(is_long).collect();
@@ -58,7 +63,7 @@ pub fn are_open<'a>(view: &Turned, rows: impl Iterator<Item = &'a Shelves>, widt
     let expected = expected(open, half_open as f64, places);
     open_rows >= ROWS
         && chance(open, expected) < UNLIKELY
-        && (open_rows == count || open >= SEVERAL && expected < EXPECTED)
+        && (open_rows == count || open >= SEVERAL && expected < EXPECTED && (half_open > 0 || !may_be_bay()))
 }
 
 /// Rows side by side but for some places at which they are open.

@@ -221,7 +221,7 @@ impl Plan {
         found.retain(|way| !is_on(way));
         let found = rows::without_lanes(views, crossed::without_bays(evidence, look, views, found));
         let found = pillared::widened(views, &slots::without(views, found), evidence.parameters);
-        let found = past_goods::led_on(views, &found);
+        let found = past_goods::led_on(views, found, least);
         let threads = evidence.threads;
         let standing = Standing::new(views, evidence.recall, threads);
         // What was too short to stay bars no way whose sides are no lines, but tells how wide that is.

@@ -94,7 +94,8 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 /// those at a wall that the rows beside go on to. Where nothing leads through all but past their ends, what has no bays'
 /// width is none, nor what each row has as many of, between bars that stand beside nothing else, nor what leads through rows
 /// of two racks that are open more often than by chance. What is as wide as a bay is one, whatever ways are as wide, where so
-/// many rows would be open somewhere by chance; and what leads through several rows is none where they hardly would. What leads
+/// many rows would be open somewhere by chance; and what leads through several rows is no bay where they hardly would, nor
+/// what leads through rows of which nothing else is open and lies as none can. What leads
 /// past rows' ends up to one that goes on farther is none, but where something leads through all and it is as wide as bays,
 /// nor where nothing of the rows beside reaches into it, or those before it end at bars and that one goes on past it. Nor
 /// those beside which, with no rack between, one leads through more rows; nor those that posts part into bays in all their
