@@ -3,13 +3,13 @@
 
 use super::Evidence;
 use super::corridors::Strip;
-use super::gates::walled;
 use super::lead::Lead;
 use super::look::Look;
 use super::meeting::CLUTTER;
 use super::passing::Place;
 use super::rows::SHORTEST;
 use super::sections::{Columns, SIDE};
+use super::walled;
 use crate::ends::{overlap, wider};
 use std::cell::OnceCell;
 use std::iter::{self, Sum};
@@ -260,7 +260,7 @@ impl<'a> Bars<'a> {
         let columns = Columns::new(self.look, &self.evidence.grid.frame, [view, other], row, view.pitch_of(row));
         let sides = |way: usize| self.sides(way, n);
         let between = between.map(|aisle| place.aisles[aisle]);
-        let is_at_wall = |end: f64| walled(view, strips, row, between, view.columns(wider([end; 2], NEAR))).any();
+        let is_at_wall = |end: f64| walled::ends(view, strips, row, between, view.columns(wider([end; 2], NEAR))).any();
         let is_of_way = |ends: [f64; 2]| ways.iter().any(|&way| overlap(wider(sides(way), NEAR), ends) >= 0.0);
         // What leads past the row's end, or through all rows, is a way.
         let centre = f64::midpoint(row.along[0], row.along[1]);

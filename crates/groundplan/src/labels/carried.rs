@@ -2,9 +2,9 @@
 //! through the rows beside shows that a way lies there.
 
 use super::Evidence;
+use super::across::crossing;
 use super::beside::{Beside, placed};
 use super::corridors::Strip;
-use super::gates::crossing;
 use super::lead::Lead;
 use super::look::Look;
 use super::passing::Place;

@@ -1,11 +1,11 @@
 //! Ways behind the last rows of a place, of which little was seen: where ways between the rows lead on past them, the rows'
 //! corners show where a way along their backs begins, and what stands across from these where it ends.
 
+use super::across::square_to;
 use super::barriers;
 use super::beside::{Beside, placed};
 use super::corridors::Strip;
 use super::family;
-use super::gates::square_to;
 use super::known::{Known, Led};
 use super::rows::{DEPTH, SAME};
 use super::runs::runs;

@@ -2,11 +2,11 @@
 //! them, and by where else they are free.
 
 use super::Evidence;
+use super::across::{crossing, leading_across};
 use super::beside::{Beside, placed};
 use super::connected;
 use super::corridors::{self, Strip};
 use super::family;
-use super::gates::{crossing, leading_across};
 use super::led;
 use super::look::Look;
 use super::rows::{self, Row};

@@ -1,57 +1,57 @@
 //! Ways through rows of racks: gates, which are too short to be known by walls of their own.
 
 use super::Evidence;
+use super::across::crossing;
 use super::bars;
-use super::beside::{Beside, placed};
+use super::beside::placed;
 use super::corridors::{self, Strip};
 use super::empties;
 use super::look::Look;
 use super::narrowed;
 use super::passing::{self, Place};
 use super::rows::Row;
-use super::sections::{Columns, WIDTH};
+use super::sections::Columns;
 use super::seen::Seen;
 use super::step::{self, Section};
 use super::thin;
 use super::through::{BETWEEN_CELLS, Through};
 use super::turned::Turned;
+use super::walled;
 use super::widths::Widths;
 use crate::bands::flat_map_each;
-use crate::bits::Bits;
-use crate::ends::{around, both, holds, overlap, wider};
+use crate::ends::{both, holds, overlap, wider};
+use std::borrow::Cow;
 use std::cell::LazyCell;
 use std::collections::BTreeMap;
 use std::iter;
-use std::ops::Range;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
 const IN_LINE: (f64, f64) = (0.7, 0.5);
 /// Rows that hold goods are open over less than this share of their length.
 const OPEN: f64 = 0.5;
-/// Directions are square to each other but for an angle of this sine.
-const SQUARE: f64 = 0.05;
 
 /// Ways through rows, as strips of the direction that crosses them.
-pub struct Gates {
+pub struct Gates<'a> {
     /// Those that were known: where bays recur, each as wide as the uprights of the rows that it leads through leave.
-    pub known: Vec<Strip>,
+    pub known: Cow<'a, [Strip]>,
     pub ways: Vec<Strip>,
     /// Others that are told from bays, as wide as they may be.
     pub as_bays: Vec<Strip>,
 }
 
 /// The ways through the rows between corridors.
-pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], rows: &[Row]) -> Gates {
+pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a [Strip], rows: &[Row]) -> Gates<'a> {
     let (mut gates, mut doubtful) = (Vec::new(), Vec::new());
     let placed = placed(views, strips.iter().map(Strip::place));
     let widest = corridors::widest(strips);
-    let reaching: Vec<Row> = rows.iter().map(|row| up_to_walls(views, strips, &placed, widest, row)).collect();
+    let reaching: Vec<Row> = rows.iter().map(|row| walled::up_to_walls(views, strips, &placed, widest, row)).collect();
     let least = evidence.parameters.labels_min_width;
     // A way that is known cuts the row that it leads through.
     let uncut = uncut(views, rows);
     let whole = uncut.as_ref().map(|rows| seen(evidence, look, views, strips, rows, rows));
     let narrow = whole.as_ref().map(|rows| narrowed::between_uprights(strips, rows, &placed, [least, widest]));
-    let strips = narrow.as_deref().unwrap_or(strips);
+    let all_known = narrow.map_or(Cow::Borrowed(strips), Cow::Owned);
+    let strips = &*all_known;
     let mut through = Through::new(views, strips, seen(evidence, look, views, strips, rows, &reaching));
     // What leads past rows at a wall, or through a row that is a wall itself from one wall to another, though it is as wide as
     // bays; it tells nothing of how wide other ways are.
@@ -123,7 +123,7 @@ pub fn find(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
     as_bays.extend(turns);
     as_bays.extend(as_wide_as_others(views, strips, &ways, in_each_row));
     as_bays.retain(|gate| !ways.iter().any(|way| is_in(gate, way)));
-    Gates { known: strips.to_vec(), ways, as_bays: in_line(as_bays) }
+    Gates { known: all_known, ways, as_bays: in_line(as_bays) }
 }
 
 /// The rows, of directions of which bays are known, as if no way that is known cut them, none of them up to the walls beyond
@@ -220,77 +220,6 @@ fn between_posts(view: &Turned, seen: &[Seen]) -> Vec<Strip> {
 /// True when one strip lies in another of its direction.
 fn is_in(one: &Strip, two: &Strip) -> bool {
     one.direction == two.direction && overlap(one.along, two.along) > 0.0 && overlap(one.across, two.across) > 0.0
-}
-
-/// In which of a range of columns, the first of which is the first bit, a wall ends a row and both ways beside it; or one
-/// of them, where the other leads on through a gate in that wall for longer than it is wide.
-pub fn walled(view: &Turned, strips: &[Strip], row: &Row, between: [usize; 2], columns: Range<usize>) -> Bits {
-    let [below, above] = between.map(|n| &strips[n]);
-    let [low, high] = [below.across[0], above.across[1]];
-    let mut walled = view.some_closed(columns.clone(), low, high);
-    for (other, low, high) in [(above, low, row.across[1]), (below, row.across[0], high)] {
-        let [from, to] = [other.along[0] + other.width(), other.along[1] - other.width()];
-        let bit = |u: f64| view.column(u).clamp(columns.start, columns.end) - columns.start;
-        if from < to {
-            let mut leads_on = Bits::new(columns.len());
-            leads_on.fill(bit(from)..bit(to));
-            walled |= &(&view.some_closed(columns.clone(), low, high) & &leads_on);
-        }
-    }
-    walled
-}
-
-/// A row with what lies beyond its ends up to the walls there, if that may be a way and no other is there.
-fn up_to_walls(views: &[Turned], strips: &[Strip], placed: &[Beside], widest: f64, row: &Row) -> Row {
-    let mut reaching = row.clone();
-    let (Some(between), Some(other)) = (row.between, crossing(views, row.direction)) else { return reaching };
-    let view = &views[row.direction];
-    let middle = f64::midpoint(row.across[0], row.across[1]);
-    let near = leading_across([view, other], placed, row, widest);
-    let is_crossed = |u: f64| {
-        near.iter().map(|&n| &strips[n]).any(|strip| {
-            let [s, at] = view.crossing(other, middle, strip.middle());
-            holds(strip.along, s) && (at - u).abs() < strip.width()
-        })
-    };
-    let most = (WIDTH.1 / view.cell) as usize;
-    for (side, end) in row.along.into_iter().enumerate() {
-        if is_crossed(end) {
-            continue;
-        }
-        let column = view.column(end);
-        let beyond =
-            if side == 0 { column.saturating_sub(most)..column } else { column..(column + most).min(view.size[0]) };
-        let count = beyond.len();
-        let closed = walled(view, strips, row, between, beyond);
-        let free = (0..count).find(|&n| closed.get(if side == 0 { count - 1 - n } else { n }));
-        if let Some(free) = free {
-            let by = free as f64 * view.cell;
-            reaching.along[side] += if side == 0 { -by } else { by };
-        }
-    }
-    reaching
-}
-
-/// Of strips by their directions and places those along another direction that may lead across a row; none is wider than
-/// the widest.
-pub fn leading_across([view, other]: [&Turned; 2], placed: &[Beside], row: &Row, widest: f64) -> Vec<usize> {
-    // So far beyond a row's ends the middle of what meets its corner may cross it, at a sine of a half or more.
-    let reach = widest + row.depth();
-    let corners = view.rectangle(wider(row.along, reach), row.across);
-    let [along, across] = [0, 1].map(|axis| around(corners.iter().map(|&corner| other.place(corner)[axis])));
-    placed[other.direction].touching(along, across)
-}
-
-/// The direction that is most nearly square to another.
-pub fn crossing(views: &[Turned], direction: usize) -> Option<&Turned> {
-    let sine = |view: &&Turned| view.sine(&views[direction]);
-    views.iter().max_by(|a, b| sine(a).total_cmp(&sine(b))).filter(|view| sine(view) > 0.5)
-}
-
-/// The same if it is square to it.
-pub fn square_to(views: &[Turned], direction: usize) -> Option<&Turned> {
-    crossing(views, direction).filter(|view| libm::cos(view.angle - views[direction].angle).abs() <= SQUARE)
 }
 
 /// Gates that follow one another through neighbouring rows are one way.

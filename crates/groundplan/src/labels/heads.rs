@@ -2,8 +2,8 @@
 //! between them and the wall has no line for its other side, or a wrong one, and yet the aisles between the rows lead there.
 
 use super::Evidence;
+use super::across::square_to;
 use super::corridors::Strip;
-use super::gates::square_to;
 use super::known::{Known, Led};
 use super::look::Look;
 use super::pillared;

@@ -1,9 +1,9 @@
 //! Pieces of one way: in line, and with nothing in the way from one to the next.
 
+use super::across::crossing;
 use super::barriers;
 use super::beside::{Beside, placed};
 use super::corridors::{ASKEW, Strip};
-use super::gates::crossing;
 use super::turned::Turned;
 use crate::ends::{around, holds, overlap, shared, sorted};
 use crate::sets::Sets;

@@ -1,5 +1,6 @@
 //! II-E: what the parts of the map are.
 
+mod across;
 mod alone;
 mod at_walls;
 mod barriers;
@@ -86,6 +87,7 @@ mod through;
 mod turned;
 mod turns;
 mod uprights;
+mod walled;
 mod whole;
 mod widening;
 mod widths;

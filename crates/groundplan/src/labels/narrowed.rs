@@ -1,9 +1,9 @@
 //! Ways through rows of racks, and past their ends: one that what stands in rows reaches into from its sides is as wide as
 //! that leaves it, and one whose sides are no lines ends with the racks beside it, unless it leads on to something.
 
+use super::across::leading_across;
 use super::beside::Beside;
 use super::corridors::Strip;
-use super::gates::leading_across;
 use super::lead::Lead;
 use super::rows::{DEPTH, Row, SAME};
 use super::seen::Seen;

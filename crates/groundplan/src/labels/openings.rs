@@ -1,7 +1,7 @@
 //! What opens into a way between the ends of two rows or of two walls, as far as it was seen: a place to turn into.
 
+use super::across::square_to;
 use super::corridors::Strip;
-use super::gates::square_to;
 use super::rows::Row;
 use super::runs::runs;
 use super::sections::{BAY, WIDTH};

@@ -1,9 +1,9 @@
 //! What ways across rows pass through of the rows of a place, and beside which others they end.
 
+use super::across::{crossing, leading_across};
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
 use super::family;
-use super::gates::{crossing, leading_across};
 use super::rows::{self, Row};
 use super::sections::is_as_bays;
 use super::seldom::{self, Rest};

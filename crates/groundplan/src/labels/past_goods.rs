@@ -17,12 +17,12 @@ use std::ops::Range;
 /// It leads on for so many widths at least, and where less than this share of its own sides is held, which are those of the
 /// rows that it crosses, for so long, metres: less is a bay of the next one.
 const LONG: f64 = 1.0;
-const SIDED: f64 = 0.7;
+const RACKED: f64 = 0.7;
 const CROSSING: f64 = 4.0;
 /// Where more than this share of what lies just beyond a side is not free, something stands along it.
 const BEYOND: f64 = 0.8;
 /// Goods narrow it where so much of a column is not free.
-const NARROWED: f64 = 0.1;
+const GOODS: f64 = 0.1;
 /// It is led on no farther than this, metres.
 const FARTHEST: f64 = 60.0;
 /// So near to where racks end beside it, metres, lies the way that it leads to, over floor that is free but for this share.
@@ -31,23 +31,22 @@ const CLUTTER: f64 = 0.1;
 
 /// The strips, each as far on as racks stand along both its sides and one gets past what stands between, up to another way;
 /// pieces that come to meet are one, no narrower than the least that a corridor is.
-pub fn led_on(views: &[Turned], strips: Vec<Strip>, least: f64) -> Vec<Strip> {
+pub fn led_on(views: &[Turned], mut strips: Vec<Strip>, least: f64) -> Vec<Strip> {
     let mut placed = placed(views, strips.iter().map(Strip::place));
-    let mut longer = strips.clone();
-    for (n, side) in (0..strips.len()).flat_map(|n| [(n, 0), (n, 1)]) {
-        if strips[n].bays || strips[n].is_short() {
-            continue;
-        }
-        if let Some(end) = (On { views, strips: &longer, placed: &placed, n, side }).end() {
-            (longer[n].along[side], longer[n].held[side]) = (end, UNTOLD[side]);
-            placed[longer[n].direction].add(n, longer[n].along, longer[n].across);
+    let mut is_longer = false;
+    for n in (0..strips.len()).filter(|&n| !strips[n].bays && !strips[n].is_short()).collect::<Vec<_>>() {
+        for side in [0, 1] {
+            let Some(end) = (Ahead { views, strips: &strips, placed: &placed, n, side }).end() else { continue };
+            (strips[n].along[side], strips[n].held[side]) = (end, UNTOLD[side]);
+            placed[strips[n].direction].add(n, strips[n].along, strips[n].across);
+            is_longer = true;
         }
     }
-    if longer == strips { strips } else { joined::join(views, longer, least) }
+    if is_longer { joined::join(views, strips, least) } else { strips }
 }
 
 /// What lies beyond one end of a strip.
-struct On<'a> {
+struct Ahead<'a> {
     views: &'a [Turned],
     strips: &'a [Strip],
     /// Where all of these lie.
@@ -56,7 +55,7 @@ struct On<'a> {
     side: usize,
 }
 
-impl On<'_> {
+impl Ahead<'_> {
     fn strip(&self) -> &Strip {
         &self.strips[self.n]
     }
@@ -70,9 +69,9 @@ impl On<'_> {
         let (strip, view) = (self.strip(), self.view());
         let columns = self.open();
         let own = view.columns(strip.along);
-        let is_sided = self.sided(&own).count(0..own.len()) as f64 >= SIDED * own.len() as f64;
-        let least = if is_sided { LONG * strip.width() } else { CROSSING.max(LONG * strip.width()) };
-        let mut ends = self.sided_up_to(&columns, (least / view.cell) as usize).into_iter().rev();
+        let is_racked = self.racked(&own).count(0..own.len()) as f64 >= RACKED * own.len() as f64;
+        let least = if is_racked { LONG * strip.width() } else { CROSSING.max(LONG * strip.width()) };
+        let mut ends = self.racked_up_to(&columns, (least / view.cell) as usize).into_iter().rev();
         ends.find_map(|count| {
             let on =
                 if self.side == 0 { columns.end - count..columns.end } else { columns.start..columns.start + count };
@@ -81,15 +80,15 @@ impl On<'_> {
         })
     }
 
-    /// So many columns beyond its end, of which at least so many have sides, no gap in these is longer than a bay but for ways
+    /// So many columns beyond its end, of which along at least so many racks stand, no gap in these is longer than a bay but for ways
     /// that cross it: before each of those, and in all.
-    fn sided_up_to(&self, columns: &Range<usize>, least: usize) -> Vec<usize> {
-        let (sided, crossed) = (self.sided(columns), self.crossed(columns));
+    fn racked_up_to(&self, columns: &Range<usize>, least: usize) -> Vec<usize> {
+        let (racked, crossed) = (self.racked(columns), self.crossed(columns));
         let gap = (BAY / self.view().cell) as usize;
         let (mut counts, mut count, mut held, mut bare) = (Vec::new(), 0, 0, 0);
         for n in 0..columns.len() {
             let outwards = if self.side == 0 { columns.len() - 1 - n } else { n };
-            if sided.get(outwards) {
+            if racked.get(outwards) {
                 (count, held, bare) = (n + 1, held + 1, 0);
             } else if crossed.get(outwards) {
                 bare = 0;
@@ -109,7 +108,7 @@ impl On<'_> {
     fn gets_past_goods(&self, on: Range<usize>) -> bool {
         let (strip, view) = (self.strip(), self.view());
         let [low, high] = wider(strip.across, -SAME);
-        view.blocked_where(on.clone(), low, high, |share| share > NARROWED).any()
+        view.blocked_where(on.clone(), low, high, |share| share > GOODS).any()
             && barriers::stops(view, strip.across, on.clone()).is_empty()
             && !barriers::beyond_a_side(view, strip.across, beyond(strip.across), on.clone()).any()
             && !barriers::doors(view, beyond(strip.across), on).any()
@@ -169,7 +168,7 @@ impl On<'_> {
     }
 
     /// At which of some columns something stands along both sides.
-    fn sided(&self, columns: &Range<usize>) -> Bits {
+    fn racked(&self, columns: &Range<usize>) -> Bits {
         let (strip, view) = (self.strip(), self.view());
         let [low, high] = strip.across;
         let beyond = [[low - BESIDE.1, low - BESIDE.0], [high + BESIDE.0, high + BESIDE.1]];

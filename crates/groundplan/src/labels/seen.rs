@@ -2,10 +2,10 @@
 
 use super::beside::Beside;
 use super::corridors::{Strip, UNTOLD};
-use super::gates;
 use super::rows::{DEPTH, Row};
 use super::sections::Columns;
 use super::turned::Turned;
+use super::walled;
 use crate::ends::{holds, overlap, sorted, wider};
 
 /// A row goes on up to a wall that is so near to its end, metres.
@@ -80,7 +80,7 @@ impl Seen<'_> {
     pub fn is_at_wall(&self, strips: &[Strip], side: usize) -> bool {
         let (view, end) = (self.views[0], self.row.along[side]);
         let beyond = if side == 0 { [end - NEAR, end] } else { [end, end + NEAR] };
-        gates::walled(view, strips, self.row, self.between, view.columns(beyond)).any()
+        walled::ends(view, strips, self.row, self.between, view.columns(beyond)).any()
     }
 
     /// The corridors that run along it no further off than a row is deep, and lead as near to a stretch as that is long.

@@ -60,9 +60,9 @@ pub fn are_open<'a>(
         half_open += shelves.halves.iter().map(|half| as_wide(half).saturating_sub(own)).sum::<usize>();
         places += shelves.row.length() / width;
     }
-    let expected = expected(open, half_open as f64, places);
+    let expected = by_chance(open, half_open as f64, places);
     open_rows >= ROWS
-        && chance(open, expected) < UNLIKELY
+        && likely(open, expected) < UNLIKELY
         && (open_rows == count || open >= SEVERAL && expected < EXPECTED && (half_open > 0 || !may_be_bay()))
 }
 
@@ -116,13 +116,13 @@ impl<'a> Rest<'a> {
         let share = (self.free + 0.5 * self.width) / (self.halves + self.width);
         let by_chance = self.halves / 2.0 / self.width * share * share;
         let open: usize = self.rows.iter().map(|row| row.open).sum();
-        self.rows.iter().all(|row| row.open == self.rows[0].open) && chance(open, by_chance) < UNLIKELY_IN_FULL
+        self.rows.iter().all(|row| row.open == self.rows[0].open) && likely(open, by_chance) < UNLIKELY_IN_FULL
     }
 }
 
 /// At how many of all places both racks are expected to be empty by chance, where both are at so many and one of them is at so
 /// many more.
-fn expected(open: usize, half_open: f64, places: f64) -> f64 {
+fn by_chance(open: usize, half_open: f64, places: f64) -> f64 {
     // How often the one is empty where the other is not.
     let shut = (places - open as f64 - half_open).max(0.0);
     let share = (half_open + 0.5) / (half_open + 2.0 * shut + 1.0);
@@ -130,7 +130,7 @@ fn expected(open: usize, half_open: f64, places: f64) -> f64 {
 }
 
 /// How likely so many or more are where so many are expected (Poisson's distribution).
-fn chance(count: usize, expected: f64) -> f64 {
+fn likely(count: usize, expected: f64) -> f64 {
     let mut term = libm::exp(-expected);
     let mut fewer = 0.0;
     for n in 0..count {
@@ -149,13 +149,13 @@ mod tests {
         for (count, expected, said) in
             [(0, 0.1, 1.0), (1, 0.1, 0.0952), (2, 0.1, 0.0047), (4, 1.0, 0.0190), (5, 1.0, 0.0037)]
         {
-            assert!((chance(count, expected) - said).abs() < 1e-4, "{count} of {expected}");
+            assert!((likely(count, expected) - said).abs() < 1e-4, "{count} of {expected}");
         }
     }
 
     #[test]
     fn where_one_of_two_racks_is_seldom_empty_both_are_not_by_chance() {
-        let is_more_than_chance = |open, half_open| chance(open, expected(open, half_open, 40.0)) < UNLIKELY;
+        let is_more_than_chance = |open, half_open| likely(open, by_chance(open, half_open, 40.0)) < UNLIKELY;
         assert!(is_more_than_chance(2, 2.0));
         assert!(!is_more_than_chance(2, 30.0));
         assert!(!is_more_than_chance(0, 2.0));

@@ -127,11 +127,8 @@ fn hidden(view: &Turned, strip: &Strip, side: usize, closed: i64) -> Option<i64>
     // Not quite square to the strip it shows in several columns.
     let begins = (closed - cells(DEEP) * sign as i64).clamp(0, last);
     let columns = (0..=cells(DEEP) + cells(SHUT)).map(|step| begins + step * sign as i64);
-    let columns = columns.filter(|c| (0..=last).contains(c));
-    let first = |across: [f64; 2]| {
-        let up_to = |c: i64| begins.min(c) as usize..begins.max(c) as usize + 1;
-        columns.clone().find(|&c| is_hit(view, up_to(c), across, SEEN))
-    };
+    let columns = columns.filter(|c| (0..=last).contains(c)).map(|c| c as usize);
+    let first = |across: [f64; 2]| hit(view, columns.clone(), across, SEEN).map(|c| c as i64);
     let (one, two) = (first([low, from])?, first([to, high])?);
     let wall = if sign < 0.0 { one.max(two) } else { one.min(two) };
     let before = sorted([BEFORE.0, BEFORE.1].map(|metres| view.along(wall as usize) - sign * metres));
@@ -141,10 +138,17 @@ fn hidden(view: &Turned, strip: &Strip, side: usize, closed: i64) -> Option<i64>
 }
 
 /// True when something stands in some columns over so much of the way across, be it ever so thin.
-fn is_hit(view: &Turned, columns: Range<usize>, [low, high]: [f64; 2], share: f64) -> bool {
+fn is_hit(view: &Turned, columns: Range<usize>, across: [f64; 2], share: f64) -> bool {
+    hit(view, columns, across, share).is_some()
+}
+
+/// The column with which something stands in it or those before over so much of the way across.
+fn hit(view: &Turned, mut columns: impl Iterator<Item = usize>, [low, high]: [f64; 2], share: f64) -> Option<usize> {
     let count = ((high - low) / view.cell).round().max(1.0);
     let place = |n: usize| low + (high - low) * n as f64 / count;
-    let stands =
-        |n: &usize| view.some_occupied(columns.clone(), place(*n), place(n + 1)).iter().any(|share| *share > 0.0);
-    (0..count as usize).filter(stands).count() as f64 >= share * count
+    let mut missed: Vec<usize> = (0..count as usize).collect();
+    columns.find(|&c| {
+        missed.retain(|&n| view.occupied(c, place(n), place(n + 1)) <= 0.0);
+        count - missed.len() as f64 >= share * count
+    })
 }

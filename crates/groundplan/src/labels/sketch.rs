@@ -262,7 +262,7 @@ impl Plan {
     fn with_others(self, evidence: &Evidence, look: &Look, views: &[Turned]) -> (Self, Vec<Strip>) {
         let threads = evidence.threads;
         let Gates { known, ways, as_bays } = gates::find(evidence, look, views, &self.strips, &self.rows);
-        let across = [known, ways].concat();
+        let across = [&*known, &ways].concat();
         let alike = [widths::alike(evidence, look, views, &across), as_bays].concat();
         let carried = carried::on(evidence, look, views, joined::apart(views, alike));
         let mut plan = if carried == self.strips { self } else { Self::new(views, carried, threads) };

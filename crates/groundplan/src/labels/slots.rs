@@ -1,11 +1,11 @@
 //! Slots in racks of several pallets' depth: places that are empty from one face on, which are no ways, be they as long as
 //! some.
 
+use super::across::crossing;
 use super::beside::placed;
 use super::connected;
 use super::corridors::Strip;
 use super::family;
-use super::gates::crossing;
 use super::meeting::CLUTTER;
 use super::rows::DEPTH;
 use super::sections::WIDTH;

@@ -1,7 +1,7 @@
 //! Gates in walls between two ways that are too thin for rows.
 
+use super::across::crossing;
 use super::corridors::Strip;
-use super::gates::crossing;
 use super::rows::{Crossings, Row, SAME, SHORTEST};
 use super::runs::{close, runs};
 use super::sections::WIDTH;

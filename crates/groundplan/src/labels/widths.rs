@@ -161,11 +161,11 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             let may_lie = || pitch().is_none() || may_be_bay();
             let is_as_bays_lie = || may_lie() && alone.is_as_bays_lie(&place, strips, own, width);
             // Where no bays recur, what each row has as many of is no gap between goods, however wide, nor what lies as none can.
-            let is_without_bays = || {
+            let is_without_bays = LazyCell::new(|| {
                 pitch().is_none() && (alone::is_one_of_each(&place, own) || closed::is_way(&place, strips, own, width))
-            };
-            let is_way = || is_as_wide() || is_no_bay() || is_without_bays();
-            let lies_as_bays = || is_bay() || is_as_bays_lie() && !is_without_bays();
+            });
+            let is_way = || is_as_wide() || is_no_bay() || *is_without_bays;
+            let lies_as_bays = || is_bay() || is_as_bays_lie() && !*is_without_bays;
             // Where width and place disagree, or neither tells, bars do; and where these are missed it is none.
             let is_told = || match (is_way(), lies_as_bays()) {
                 (true, false) => !bars.are_missed(n),
