@@ -275,3 +275,18 @@ def test_the_way_along_the_wall_is_one_though_pillars_stand_in_it(side: str, row
     assert widths == pytest.approx([3.0, 5.5], abs=0.2)
     kinds = sorted(label["type"] for label in survey.of_kind("junction"))
     assert kinds == ["L"] * 4 + ["T"] * (2 * rows - 2)
+
+
+@pytest.mark.parametrize("single", [0.9, 1.2, 1.4])
+def test_a_way_leads_past_few_rows_that_end_alike_before_an_office_which_the_next_aisle_passes(single: float) -> None:
+    """Three single rows: two end 3 m before the wall of an office of 11 m by 9 m, along the third an aisle leads on."""
+    y, x = np.mgrid[-1.0:17.0:0.05, -1.0:47.0:0.05] + 0.025
+    is_office = (x > 34.0) & (y > 8.0)
+    picture = np.full(x.shape, 205, dtype=np.uint8)
+    picture[(x > -0.2) & (y > -0.2) & (x < 45.2) & (y < 16.2) & ~((x > 34.2) & (y > 8.2))] = 0
+    picture[(x > 0) & (y > 0) & (x < 45) & (y < 16) & ~is_office] = 254
+    for low, end in ((3.0, 42.0), (8.0 - single, 31.0), (12.0 - single, 31.0)):
+        picture[(x > 3.0) & (x < end) & (y > low) & (y < low + single)] = 0
+    survey = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=0.05)
+    beside = [label for label in survey.of_kind("junction") if abs(label["at"][0] - 33.5) < 1.0]
+    assert sorted(label["type"] for label in beside) == ["L", "T", "T"]

@@ -1,5 +1,5 @@
-//! Ways along a wall before the heads of rows: where rows end each at its own place, or their last bays are empty, what lies
-//! between them and the wall has no line for its other side, or a wrong one, and yet the aisles between the rows lead there.
+//! Ways along a wall before the heads of rows: where rows end each at its own place, their last bays are empty or they are few,
+//! what lies between them and the wall has no line for its other side, or a wrong one, and yet the aisles between lead there.
 
 use super::Evidence;
 use super::across::square_to;
@@ -31,7 +31,7 @@ const WALL: f64 = 0.3;
 /// Where no row ends more than so many pitches before the wall it may be by their last bays, which are empty.
 const BAY: f64 = 1.15;
 /// The longest row and what fills the shortest one differ by so much, metres: where rows end alike and are full up to
-/// there, a line is the way's side.
+/// there, a line is the way's side, unless the wall is short and an aisle leads on past it.
 const APART: f64 = 0.6;
 /// A way in which one in so many of these rows ends, and `ROWS` at least, is too wide.
 const ENDING: usize = 3;
@@ -116,30 +116,32 @@ impl Heads<'_> {
         let before = |row: &Between| {
             let wall = self.wall_of(row.aisles)?;
             let [free, empty] = self.free(row, wall);
-            (free >= least).then_some((wall, free, empty))
+            (free >= least).then_some([wall, free, empty])
         };
-        let ends: Vec<Option<(f64, f64, f64)>> = flat_map_each(chain.len(), self.threads, |n| [before(&chain[n])]);
+        let ends: Vec<Option<[f64; 3]>> = flat_map_each(chain.len(), self.threads, |n| [before(&chain[n])]);
         let mut found = Vec::new();
         let mut from = 0;
         while from < chain.len() {
             let goes_on = |n: &usize| {
-                let wall = |n: usize| ends[n].map(|(wall, ..)| wall);
+                let wall = |n: usize| ends[n].map(|[wall, ..]| wall);
                 wall(*n).zip(wall(from)).is_some_and(|(one, two)| (one - two).abs() <= IN_LINE)
             };
             let to = (from..chain.len()).find(|n| !goes_on(n)).unwrap_or(chain.len());
             if to - from >= ROWS {
-                let of =
-                    |value: fn((f64, f64, f64)) -> f64| ends[from..to].iter().flatten().map(move |&end| value(end));
-                let wall = of(|(wall, ..)| wall).sum::<f64>() / (to - from) as f64;
-                let free: Vec<f64> = of(|(_, free, _)| free).collect();
-                let empty = of(|(.., empty)| empty).fold(0.0, f64::max);
+                let of = |value: usize| ends[from..to].iter().flatten().map(move |end| end[value]);
+                let wall = of(0).sum::<f64>() / (to - from) as f64;
+                let free: Vec<f64> = of(1).collect();
+                let empty = of(2).fold(0.0, f64::max);
                 let [width, most] = around(free.iter().copied());
                 // Empty bays have their uprights: where one row has none for longer, it ends there.
                 let are_bays = self.view.pitch.is_some_and(|pitch| most <= BAY * pitch);
-                if empty - width >= APART && !are_bays {
+                let last = [chain[from].aisles[0], chain[to - 1].aisles[1]];
+                let end = |n: usize| self.wall(n).unwrap_or(self.strips[n].along[self.side]);
+                let is_short = || last.into_iter().any(|n| self.is_past(n, end(n), wall));
+                if !are_bays && (empty - width >= APART || is_short()) {
                     found.extend(self.way(&chain[from..to], wall, width).map(|led| Head { led, free }));
                 }
-            } else if let Some((wall, width, _)) = ends[from].filter(|&(wall, ..)| self.leads_past(&chain[from], wall))
+            } else if let Some([wall, width, _]) = ends[from].filter(|&[wall, ..]| self.leads_past(&chain[from], wall))
             {
                 found.extend(self.way(&chain[from..=from], wall, width).map(|led| Head { led, free: vec![width] }));
             }
@@ -152,13 +154,17 @@ impl Heads<'_> {
     /// closes that one there.
     fn wall_of(&self, aisles: [usize; 2]) -> Option<f64> {
         let [one, two] = aisles.map(|n| self.wall(n));
-        let leads_on = |n: usize, own: Option<f64>, other: f64| own.is_none_or(|own| self.is_past(n, own, other));
         match (one, two) {
             (Some(one), Some(two)) if (one - two).abs() <= IN_LINE => Some(f64::midpoint(one, two)),
-            (Some(one), _) if leads_on(aisles[1], two, one) => Some(one),
-            (_, Some(two)) if leads_on(aisles[0], one, two) => Some(two),
+            (Some(one), _) if self.leads_on(aisles[1], two, one) => Some(one),
+            (_, Some(two)) if self.leads_on(aisles[0], one, two) => Some(two),
             _ => None,
         }
+    }
+
+    /// True when an aisle leads on past a wall: what closes it, if anything does, lies beyond.
+    fn leads_on(&self, aisle: usize, own: Option<f64>, wall: f64) -> bool {
+        own.is_none_or(|own| self.is_past(aisle, own, wall))
     }
 
     /// True when one of two aisles leads on past a wall that closes the other one and the row between.

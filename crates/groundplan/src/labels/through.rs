@@ -271,7 +271,7 @@ impl<'a> Through<'a> {
         for &next in &self.above[last] {
             for open in self.open.of(next) {
                 let both = shared(ends, *open);
-                if both[1] - both[0] >= WIDTH.0 {
+                if both[1] - both[0] + BETWEEN_CELLS >= WIDTH.0 {
                     rows.push(next);
                     self.follow(rows, both, found);
                     rows.pop();
