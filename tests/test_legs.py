@@ -148,3 +148,88 @@ def test_a_way_through_racks_whose_legs_stand_a_bay_apart_beside_it_is_told_by_t
     survey = groundplan.survey(with_a_way(), resolution=RESOLUTION)
     types = [junction["type"] for junction in survey.of_kind("junction")]
     assert sorted(types) == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
+
+
+def double(x: float, y: float, bays: int, pitch: float, closed: tuple[bool, bool], back: float = 0.2) -> Iterator[Box]:
+    """Two racks 1.1 m deep back to back; a plate as deep as both stands in place of the legs at a closed end."""
+    depth = 2.2 + back
+    for low in (y, y + 1.1 + back):
+        first, last = int(closed[0]), bays - int(closed[1])
+        yield from legs(x + first * pitch, low, last - first, 1.1, pitch)
+    for is_closed, at in zip(closed, (x, x + bays * pitch), strict=True):
+        if is_closed:
+            yield at, y, at + 0.1, y + depth
+
+
+def lengths(survey: groundplan.Survey) -> list[float]:
+    return sorted(float(np.hypot(*np.subtract(*rack["axis"]))) for rack in survey.of_kind("rack"))
+
+
+@pytest.mark.parametrize("degrees", [0.0, 33.0])
+def test_a_plate_across_two_racks_back_to_back_is_the_last_frame_of_both(degrees: float) -> None:
+    boxes = (box for n in range(4) for box in double(4.0, 3.0 + 5.4 * n, 7, 2.7, (True, True)))
+    picture = hall(27.0, 24.6, boxes, degrees)
+    assert counts(picture) == {"rack": 4, "corridor": 7, "junction": 10, "pillar": 0}
+    assert lengths(groundplan.survey(picture, resolution=RESOLUTION)) == pytest.approx([18.9] * 4, abs=0.3)
+
+
+def test_racks_in_line_have_bays_of_their_own() -> None:
+    def boxes() -> Iterator[Box]:
+        for n in range(4):
+            yield from double(4.0, 3.0 + 5.4 * n, 7, 1.5, (True, True))
+            yield from double(18.2, 3.0 + 5.4 * n, 3, 2.8, (True, True))
+
+    survey = groundplan.survey(hall(30.6, 24.6, boxes()), resolution=RESOLUTION)
+    assert lengths(survey) == pytest.approx([8.4] * 4 + [10.5] * 4, abs=0.3)
+    assert len(survey.of_kind("corridor")) == 8 and len(survey.of_kind("junction")) == 15
+
+
+def test_the_legs_between_two_racks_are_no_frame_though_they_stand_as_far_apart_as_shelves_are_deep() -> None:
+    boxes = (box for n in range(3) for box in double(4.0, 3.0 + 5.7 * n, 8, 2.2, (False, False), back=0.45))
+    survey = groundplan.survey(hall(25.7, 20.1, boxes), resolution=RESOLUTION)
+    assert [rack["width"] for rack in survey.of_kind("rack")] == pytest.approx([2.65] * 3, abs=0.15)
+    assert len(survey.of_kind("corridor")) == 6
+
+
+@pytest.mark.parametrize(
+    ("bays", "closed", "racks"), [(3, (True, True), 1), (5, (False, False), 1), (2, (False, False), 0)]
+)
+def test_two_racks_back_to_back_by_themselves_are_told_from_tables_by_plates_or_their_length(
+    bays: int, closed: tuple[bool, bool], racks: int
+) -> None:
+    picture = hall(9.0 + 2.7 * bays, 9.0, double(4.0, 3.3, bays, 2.7, closed))
+    assert counts(picture)["rack"] == racks
+
+
+def test_racks_of_one_pitch_are_of_a_kind_though_none_is_as_deep_as_another() -> None:
+    boxes = (box for n, depth in enumerate((0.8, 1.1, 1.4)) for box in legs(4.0, 3.0 + 4.2 * n, 5, depth, 2.7))
+    assert counts(hall(21.5, 15.8, boxes))["rack"] == 3
+
+
+@pytest.mark.parametrize(("last", "ways"), [(True, 1), (False, 0)])
+def test_what_ends_one_bay_before_a_wall_leans_on_it_where_its_other_end_alone_is_closed(last: bool, ways: int) -> None:
+    boxes = (box for n in range(4) for box in double(4.0, 3.0 + 5.4 * n, 7, 2.7, (True, last)))
+    survey = groundplan.survey(hall(4.0 + 8 * 2.7, 24.6, boxes), resolution=RESOLUTION)
+    along = [way for way in survey.of_kind("corridor") if way["axis"][0][0] > 22.9 and way["name"][0] == "C"]
+    assert len([way for way in survey.of_kind("corridor") if way["name"][0] == "C"]) == 1 + ways, along
+
+
+@pytest.mark.parametrize("is_double", [False, True])
+def test_a_way_as_wide_as_a_bay_between_plates_is_one(is_double: bool) -> None:
+    def boxes() -> Iterator[Box]:
+        for n in range(3):
+            for x in (4.0, 4.0 + 5 * 2.7):
+                if is_double:
+                    yield from double(x, 3.0 + 5.4 * n, 4, 2.7, (True, True))
+                else:
+                    yield from legs(x + 2.7, 3.0 + 5.4 * n, 2, 1.1, 2.7)
+                    yield from plates(x, 3.0 + 5.4 * n, 1, 1.1, 4 * 2.7)
+
+    survey = groundplan.survey(hall(8.0 + 9 * 2.7, 18.0, boxes()), resolution=RESOLUTION)
+    assert len(survey.of_kind("rack")) == 6
+    assert len([way for way in survey.of_kind("corridor") if way["name"][0] == "C"]) == 3
+
+
+def test_rows_of_tables_are_no_racks_though_their_legs_are_in_step() -> None:
+    boxes = (box for n, depth in enumerate((0.7, 1.1)) for box in legs(4.0, 3.0 + 3.0 * n, 5, depth, 1.6))
+    assert counts(hall(16.0, 12.0, boxes))["rack"] == 0

@@ -12,13 +12,15 @@ const DEPTH: [f64; 2] = [0.4, 1.6];
 const NEARER: f64 = 0.8;
 pub const AISLE: f64 = 6.0;
 /// Frames back to back are no further apart, metres.
-pub const BACK: f64 = 0.45;
-/// Legs back to back that are seen as one thing are no wider than this together, and the middle of each lies half of a usual
-/// leg within that, metres.
-const TWO: f64 = BACK + 0.3;
+pub const BACK: f64 = 0.6;
+/// Legs back to back that are seen as one thing are no wider than this together, metres.
+const TWO: f64 = 0.75;
+/// The middle of a leg lies half of a usual one within the end of what it is a part of, metres.
 const HALF: f64 = 0.05;
 /// Legs stand so near to where they would without the map's error, metres.
 pub const NEAR: f64 = 0.15;
+/// A plate across two racks back to back is as deep as two frames in line with it, no farther off along than this, metres.
+const ALONG: f64 = 9.0;
 
 /// Two legs across from each other.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +29,8 @@ pub struct Frame {
     pub at: f64,
     /// Across.
     pub faces: [f64; 2],
+    /// A plate joins its legs.
+    pub is_plate: bool,
 }
 
 impl Frame {
@@ -42,7 +46,7 @@ impl Frame {
 
 /// The frames that uprights make across a heading, by their places along it, and all legs.
 pub fn frames(uprights: &[Upright], [cos, sin]: [f64; 2]) -> (Vec<Frame>, Legs) {
-    let mut frames = Vec::new();
+    let (mut frames, mut deep) = (Vec::new(), Vec::new());
     let mut all = Vec::new();
     for upright in uprights {
         let [x, y] = upright.at;
@@ -58,14 +62,47 @@ pub fn frames(uprights: &[Upright], [cos, sin]: [f64; 2]) -> (Vec<Frame>, Legs) 
         if across <= TWO {
             all.extend([-1.0, 1.0].map(|side| [u, v + side * (across / 2.0 - HALF)]));
         }
-        if holds(DEPTH, across) {
-            frames.push(Frame { at: u, faces: [v - across / 2.0, v + across / 2.0] });
+        let plate = Frame { at: u, faces: [v - across / 2.0 + HALF, v + across / 2.0 - HALF], is_plate: true };
+        if holds(DEPTH, plate.depth()) {
+            frames.push(plate);
+        }
+        if holds([2.0 * DEPTH[0], 2.0 * DEPTH[1] + BACK], plate.depth()) {
+            deep.push(plate);
         }
     }
     let legs = Legs::new(&all);
     frames.extend(all.iter().filter_map(|&leg| legs.frame(leg)));
+    let shared = shared_plates(&deep, &frames);
+    frames.extend(shared);
     frames.sort_by(|a, b| a.at.total_cmp(&b.at));
     (frames, legs)
+}
+
+/// The two frames back to back of each plate that is as deep as both, each as those in line with it that end at its lower face.
+fn shared_plates(plates: &[Frame], frames: &[Frame]) -> Vec<Frame> {
+    if plates.is_empty() {
+        return Vec::new();
+    }
+    let strip = |face: f64| (face / NEAR).floor() as i64;
+    let mut strips: BTreeMap<i64, Vec<&Frame>> = BTreeMap::new();
+    for frame in frames {
+        strips.entry(strip(frame.faces[0])).or_default().push(frame);
+    }
+    let both = |plate: &Frame| {
+        let [low, high] = plate.faces;
+        let is_half = |frame: &&Frame| {
+            (frame.faces[0] - low).abs() <= NEAR
+                && holds([-NEAR, BACK + NEAR], plate.depth() - 2.0 * frame.depth())
+                && (frame.at - plate.at).abs() <= ALONG
+        };
+        let own = strip(low);
+        let near = strips.range(own.saturating_sub(1)..=own.saturating_add(1)).flat_map(|(_, strip)| strip).copied();
+        let off = |frame: &Frame| (frame.at - plate.at).abs();
+        let half = near.filter(is_half).min_by(|a, b| off(a).total_cmp(&off(b)))?;
+        let depth = half.depth();
+        Some([[low, low + depth], [high - depth, high]].map(|faces| Frame { faces, ..*plate }))
+    };
+    plates.iter().filter_map(both).flatten().collect()
 }
 
 /// Legs by columns as wide as they may be off, of each the places across, ascending, and along.
@@ -121,7 +158,24 @@ impl Legs {
             return None;
         }
         let is_frame = self.is_open(leg, -1.0, depth) && self.is_open(other, 1.0, depth);
-        is_frame.then(|| Frame { at: f64::midpoint(leg[0], other[0]), faces: [leg[1], other[1]] })
+        (is_frame && !self.are_backs(leg, other)).then(|| Frame {
+            at: f64::midpoint(leg[0], other[0]),
+            faces: [leg[1], other[1]],
+            is_plate: false,
+        })
+    }
+
+    /// True when two legs are those in the middle of two frames back to back: the next on either side are as far off as each
+    /// other, and beyond both lies an aisle.
+    fn are_backs(&self, low: [f64; 2], high: [f64; 2]) -> bool {
+        let back = high[1] - low[1];
+        let beyond = [(low, -1.0), (high, 1.0)].map(|(leg, side)| {
+            let far = self.next(leg, side)?;
+            let depth = (far[1] - leg[1]).abs();
+            let is_open = self.next(far, side).is_none_or(|next| depth <= NEARER * (next[1] - far[1]).abs());
+            (is_open && depth > back).then_some(depth)
+        });
+        back <= BACK && matches!(beyond, [Some(one), Some(two)] if (one - two).abs() <= NEAR)
     }
 
     /// True when an aisle or nothing lies beyond a leg of a frame as deep, be it beyond another frame back to back, which

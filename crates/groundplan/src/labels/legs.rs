@@ -1,6 +1,7 @@
 //! Racks of which a lidar sees the legs alone: under the lowest beams there is floor, and the legs stand in pairs of rows at
 //! one pitch. Two legs that stand across from each other make a frame, as does a plate that joins them; frames that
-//! follow one another at one pitch with the same two faces are a rack, where there is another of the kind.
+//! follow one another at one pitch with the same two faces are a rack, where there are others of the kind or what is back to
+//! back is no table.
 
 use super::Scene;
 use super::blocks;
@@ -11,7 +12,7 @@ use super::rows::Row;
 use super::uprights::Upright;
 use crate::bands::{map_each, worth};
 use crate::directions::Directions;
-use crate::ends::{both, holds, overlap, sorted, wider};
+use crate::ends::{both, holds, overlap, shared, sorted, wider};
 use crate::grid::{Grid, State};
 use std::collections::BTreeMap;
 
@@ -23,8 +24,16 @@ const QUARTER: usize = 4;
 /// So many frames make what may be a rack, and so many of a kind are racks: one may be a long table.
 const FRAMES: usize = 3;
 const KIND: usize = 2;
-/// Pitches of a kind differ by no more than this share.
+/// Pitches of a kind differ by no more than this share, and of racks that are not as deep by no more than that, of which there are
+/// more.
 const ALIKE: f64 = 0.08;
+const STEPS: f64 = 0.01;
+const SEVERAL: usize = 3;
+/// Between plates a single rack shows so many frames, with these.
+const CLOSED: usize = 5;
+/// No table is longer, nor desks side by side, metres; a desk is no wider, and what is, in two rows, no longer.
+const TABLE: f64 = 14.0;
+const DESK: (f64, f64) = (2.2, 8.0);
 /// Two racks are one where they share so much of their length.
 const SHARED: f64 = 0.8;
 /// Floor shows before a face from so far to so far off, metres, over so much of its length.
@@ -35,19 +44,27 @@ const STEP: f64 = 0.1;
 /// much of its depth.
 const LEANING: usize = 2;
 const LOST: f64 = 0.5;
+/// What ends one bay before a wall, but for so much, metres, may lean on it; no way leads past shorter bays.
+const UP_TO_WALL: f64 = 0.25;
+const NARROW: f64 = 1.2;
 /// A wall across a row is seen over so much of it.
 const WALL: f64 = 0.9;
 
 /// Frames in a row.
 #[derive(Clone, Debug)]
-struct Rack {
-    row: Row,
-    pitch: f64,
+pub struct Rack {
+    pub row: Row,
+    /// From frame to frame, metres.
+    pub pitch: f64,
     frames: usize,
+    /// A plate is the first of them, and the last.
+    closed: [bool; 2],
+    /// It is two, back to back.
+    is_double: bool,
 }
 
 /// The racks that some uprights are legs of, along each direction.
-pub fn find(scene: &Scene, uprights: &[Upright]) -> Vec<Row> {
+pub fn find(scene: &Scene, uprights: &[Upright]) -> Vec<Rack> {
     let Scene { grid, directions, threads, .. } = *scene;
     let threads = worth(grid.frame.width * grid.frame.height, threads);
     let along = |direction: usize| {
@@ -67,27 +84,68 @@ pub fn find(scene: &Scene, uprights: &[Upright]) -> Vec<Row> {
     let mut racks = map_each(directions.angles.len(), threads, along).concat();
     // Legs of more than one direction's racks are of that which has most of them in a row.
     racks.sort_by_key(|rack| std::cmp::Reverse(rack.frames));
-    let rows: Vec<Row> = racks.into_iter().map(|rack| rack.row).collect();
+    let rows: Vec<&Row> = racks.iter().map(|rack| &rack.row).collect();
     let corners: Vec<_> = rows.iter().map(|row| on_map(directions, row).to_vec()).collect();
     let near = Near::polygons(&corners);
     let mut stays = vec![false; rows.len()];
     for (n, row) in rows.iter().enumerate() {
         let is_same = |m: u32| {
-            let other = &rows[m as usize];
+            let other = rows[m as usize];
             let is_kept = stays[m as usize] && other.direction != row.direction;
-            is_kept && (holds_middle(directions, other, row) || holds_middle(directions, row, other))
+            is_kept && (lies_over(directions, other, row) || lies_over(directions, row, other))
         };
         stays[n] = !near.beside(&corners[n]).into_iter().any(is_same);
     }
-    rows.into_iter().zip(stays).filter_map(|(row, stays)| stays.then_some(row)).collect()
+    racks.into_iter().zip(stays).filter_map(|(rack, stays)| stays.then_some(rack)).collect()
 }
 
-/// True when a row holds the middle of another.
-fn holds_middle(directions: &Directions, row: &Row, other: &Row) -> bool {
+/// True when a row lies over some of another's middle line.
+fn lies_over(directions: &Directions, row: &Row, other: &Row) -> bool {
     let [own, its] = [row, other].map(|row| directions.angles[row.direction]);
     let (sin, cos) = (libm::sin(its - own), libm::cos(its - own));
-    let [u, v] = [other.along, other.across].map(|ends| f64::midpoint(ends[0], ends[1]));
-    holds(row.along, u * cos - v * sin) && holds(row.across, u * sin + v * cos)
+    let v = f64::midpoint(other.across[0], other.across[1]);
+    let mut places = steps(other.along, row.depth().min(row.length()) / 2.0);
+    places.any(|u| holds(row.along, u * cos - v * sin) && holds(row.across, u * sin + v * cos))
+}
+
+/// The racks of one direction, by which rows tell how far it is from frame to frame.
+#[derive(Default)]
+pub struct Pitches {
+    /// From where to where along, across, and the pitch, in the order of their places across.
+    racks: Vec<([f64; 2], [f64; 2], f64)>,
+    deepest: f64,
+}
+
+impl Pitches {
+    pub fn of(direction: usize, racks: &[Rack]) -> Self {
+        let own = racks.iter().filter(|rack| rack.row.direction == direction);
+        let mut racks: Vec<_> = own.map(|Rack { row, pitch, .. }| (row.along, row.across, *pitch)).collect();
+        racks.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]));
+        let deepest = racks.iter().map(|(_, across, _)| across[1] - across[0]).fold(0.0, f64::max);
+        Self { racks, deepest }
+    }
+
+    /// From frame to frame along a row, metres, where racks on legs make up most of it: that of most of them.
+    pub fn about(&self, row: &Row) -> Option<f64> {
+        let first = self.racks.partition_point(|(_, across, _)| across[0] < row.across[0] - self.deepest);
+        let near = self.racks[first..].iter().take_while(|(_, across, _)| across[0] < row.across[1]);
+        let own =
+            near.filter(|(along, across, _)| overlap(*along, row.along) > 0.0 && overlap(*across, row.across) > 0.0);
+        let mut own: Vec<([f64; 2], f64)> = own.map(|(along, _, pitch)| (shared(*along, row.along), *pitch)).collect();
+        own.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
+        let of = |pitch: f64| {
+            let alike = own.iter().filter(|(_, other)| (other - pitch).abs() <= ALIKE * pitch);
+            alike.map(|([from, to], _)| to - from).sum::<f64>()
+        };
+        let most = own.iter().map(|(_, pitch)| *pitch).max_by(|one, two| of(*one).total_cmp(&of(*two)));
+        // Racks beside each other are in one place.
+        let (mut covered, mut end) = (0.0, f64::NEG_INFINITY);
+        for ([from, to], _) in &own {
+            covered += (to - from.max(end)).max(0.0);
+            end = end.max(*to);
+        }
+        most.filter(|_| covered > row.length() / 2.0)
+    }
 }
 
 /// Frames that follow one another at one pitch.
@@ -132,19 +190,49 @@ fn gap(row: &[Frame]) -> Option<f64> {
 /// The pieces of a row of frames whose gaps are alike, but for frames of which one leg was not seen.
 fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs) -> Vec<Vec<Frame>> {
     // A plate and the legs that it joins are one frame.
-    row.dedup_by(|next, frame| next.at - frame.at <= NEAR);
-    let Some(pitch) = gap(&row) else { return Vec::new() };
-    if !(PITCH[0].max(OBLONG * row[0].depth())..=PITCH[1]).contains(&pitch) {
-        return Vec::new();
+    row.dedup_by(|next, frame| {
+        let is_same = next.at - frame.at <= NEAR;
+        frame.is_plate |= is_same && next.is_plate;
+        is_same
+    });
+    let mut found = Vec::new();
+    let mut left = vec![&row[..]];
+    while let Some(some) = left.pop() {
+        let pieces = pieces(some, legs);
+        let mut first = 0;
+        for others in pieces.chunk_by(|a, b| a.len() < FRAMES && b.len() < FRAMES) {
+            let frames = &some[first..first + others.iter().map(|piece| piece.len()).sum::<usize>()];
+            first += frames.len();
+            // Of another rack in line bays may be longer.
+            match others {
+                [piece] if piece.len() >= FRAMES => found.push(piece.to_vec()),
+                _ if frames.len() < some.len() => left.push(frames),
+                _ => {}
+            }
+        }
     }
+    found.sort_by(|a: &Vec<Frame>, b| a[0].at.total_cmp(&b[0].at));
+    found
+}
+
+/// A row of frames, parted where one does not follow another at the pitch of most; nothing where that is no rack's.
+fn pieces<'a>(row: &'a [Frame], legs: &Legs) -> Vec<&'a [Frame]> {
+    let Some(pitch) = gap(row).filter(|pitch| (PITCH[0].max(OBLONG * row[0].depth())..=PITCH[1]).contains(pitch))
+    else {
+        return Vec::new();
+    };
+    // Of racks that plates close two face each other across a way, be it as wide as a bay.
+    let are_ends = 2 * row.iter().filter(|frame| frame.is_plate).count() <= row.len();
     let is_next = |a: &Frame, b: &Frame| {
+        if are_ends && a.is_plate && b.is_plate {
+            return false;
+        }
         let bays = ((b.at - a.at) / pitch).round();
         let is_whole = (b.at - a.at - bays * pitch).abs() <= NEAR;
         let mut between = (1..bays as usize).map(|n| a.at + (b.at - a.at) * n as f64 / bays);
         is_whole && between.all(|at| legs.stand_at(at, a.faces))
     };
-    let pieces = row.chunk_by(is_next);
-    pieces.filter(|piece| piece.len() >= FRAMES).map(<[Frame]>::to_vec).collect()
+    row.chunk_by(is_next).collect()
 }
 
 /// The rack of some frames, with those at its ends of which one leg was not seen, unless a wall parts them from it: specks
@@ -162,9 +250,16 @@ fn rack(direction: usize, row: &[Frame], legs: &Legs, map: &Map) -> Rack {
         }
         off
     };
-    let along = [first + beyond(first, -pitch), last + beyond(last, pitch)];
+    let (below, above) = (beyond(first, -pitch), beyond(last, pitch));
+    let closed = [row[0].is_plate && below == 0.0, row[row.len() - 1].is_plate && above == 0.0];
+    // Where plates close racks, one that ends without leans on what it ends at, as what leaves no room for a way does.
+    let up_to_wall = |end: f64, by: f64, is_closed: bool| {
+        let may_lean = !is_closed && (closed.contains(&true) || pitch < NARROW);
+        if may_lean && map.is_walled(wider([end + by; 2], UP_TO_WALL), across) { end + by } else { end }
+    };
+    let along = [up_to_wall(first + below, -pitch, closed[0]), up_to_wall(last + above, pitch, closed[1])];
     let frames = ((along[1] - along[0]) / pitch).round() as usize + 1;
-    Rack { row: Row { direction, along, across, between: None }, pitch, frames }
+    Rack { row: Row { direction, along, across, between: None }, pitch, frames, closed, is_double: false }
 }
 
 /// The rack that a frame is of which stands beside another one and has frames at its places, but for some that are lost
@@ -251,9 +346,11 @@ fn back_to_back(mut racks: Vec<Rack>) -> Vec<Rack> {
                 && overlap(row.along, other.along) >= SHARED * row.length().max(other.length())
         };
         let near = whole.iter_mut().rev().take_while(|other| row.across[0] - other.row.across[0] <= AISLE);
-        if let Some(Rack { row: other, .. }) = near.into_iter().find(is_back) {
-            other.along = both(other.along, row.along);
-            other.across[1] = other.across[1].max(row.across[1]);
+        if let Some(whole) = near.into_iter().find(is_back) {
+            whole.row.along = both(whole.row.along, row.along);
+            whole.row.across[1] = whole.row.across[1].max(row.across[1]);
+            whole.closed = [0, 1].map(|end| whole.closed[end] || rack.closed[end]);
+            whole.is_double = true;
         } else {
             whole.push(rack);
         }
@@ -261,13 +358,31 @@ fn back_to_back(mut racks: Vec<Rack>) -> Vec<Rack> {
     whole
 }
 
-/// True when there are enough of a rack's kind.
+/// True when what may be a rack has plates at both its ends, and is two back to back or has frames enough between them; or is
+/// longer than any table.
+fn is_no_table(rack: &Rack) -> bool {
+    let is_closed = rack.closed == [true; 2] && (rack.is_double || rack.frames >= CLOSED);
+    let is_no_desk = rack.is_double && rack.pitch > DESK.0 && rack.row.length() > DESK.1;
+    is_closed || is_no_desk || rack.row.length() > TABLE
+}
+
+/// True when there are enough of a rack's kind: as deep and with bays as long, or both of two back to back; or with bays of one
+/// length side by side and in step. Of what is no table one is enough.
 fn is_kind(rack: &Rack, all: &[Rack]) -> bool {
     let depth = rack.row.depth();
     let alike = |other: &&Rack| {
-        (other.row.depth() - depth).abs() <= NEAR && (other.pitch - rack.pitch).abs() <= ALIKE * rack.pitch
+        (other.row.depth() - depth).abs() <= NEAR
+            && ((other.pitch - rack.pitch).abs() <= ALIKE * rack.pitch || rack.is_double && other.is_double)
     };
-    all.iter().filter(alike).take(KIND).count() == KIND
+    let in_step = |other: &&Rack| {
+        let bays = (other.row.along[0] - rack.row.along[0]) / rack.pitch;
+        (other.pitch - rack.pitch).abs() <= STEPS * rack.pitch
+            && (bays - bays.round()).abs() * rack.pitch <= NEAR
+            && overlap(other.row.along, rack.row.along) > 0.0
+    };
+    is_no_table(rack)
+        || all.iter().filter(alike).take(KIND).count() == KIND
+        || all.iter().filter(in_step).take(SEVERAL).count() == SEVERAL
 }
 
 #[cfg(test)]
@@ -290,7 +405,7 @@ mod tests {
 
     #[test]
     fn frames_at_one_place_are_one_and_the_rack_of_them_ends() {
-        let frame = |at: f64| Frame { at, faces: [0.0, 1.1] };
+        let frame = |at: f64| Frame { at, faces: [0.0, 1.1], is_plate: false };
         let (_, legs) = frames(&[], EAST);
         let places = [0.0, 0.0, 0.1, 2.0, 2.0, 4.0, 4.05, 6.0];
         let rows = at_one_pitch(places.map(frame).to_vec(), &legs);
@@ -302,7 +417,7 @@ mod tests {
     #[test]
     fn a_rack_goes_on_to_a_leg_by_itself_but_not_past_a_wall() {
         let leg = |u: f64| Upright::point([u, 3.0]);
-        let row = [4.0, 6.0, 8.0].map(|at| Frame { at, faces: [3.0, 4.1] });
+        let row = [4.0, 6.0, 8.0].map(|at| Frame { at, faces: [3.0, 4.1], is_plate: false });
         let (_, legs) = frames(&[leg(2.0), leg(10.0)], EAST);
         let along = |wall: usize| on_map(|x, _| x == wall, EAST, |map| rack(0, &row, &legs, map)).row.along;
         assert_eq!([along(230), along(180), along(60)], [[2.0, 10.0], [2.0, 8.0], [4.0, 10.0]]);

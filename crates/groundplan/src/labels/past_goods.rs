@@ -80,8 +80,8 @@ impl Ahead<'_> {
         })
     }
 
-    /// So many columns beyond its end, of which along at least so many racks stand, no gap in these is longer than a bay but for ways
-    /// that cross it: before each of those, and in all.
+    /// So many columns beyond its end, along at least so many of which racks stand, with no gap in these that is longer than a
+    /// bay, but for ways that cross it: before each of those, and in all.
     fn racked_up_to(&self, columns: &Range<usize>, least: usize) -> Vec<usize> {
         let (racked, crossed) = (self.racked(columns), self.crossed(columns));
         let gap = (BAY / self.view().cell) as usize;

@@ -55,11 +55,13 @@ pub struct Glance<'a> {
 
 impl<'a> Glance<'a> {
     pub fn new(scene: &Scene<'a>, look: Look<'a>, uprights: &[Upright]) -> Self {
-        let on_legs = legs::find(scene, uprights);
+        let racks = legs::find(scene, uprights);
+        let on_legs: Vec<Row> = racks.iter().map(|rack| rack.row.clone()).collect();
         let count = scene.directions.angles.len();
         let mut views: Vec<_> = (0..count).map(|direction| Turned::new(scene, direction, &on_legs)).collect();
         for view in &mut views {
             view.take_frames(uprights);
+            view.take_pitches(&racks);
         }
         quarter::see(&mut views, scene, &look);
         Self { look, views, on_legs }
@@ -109,9 +111,11 @@ impl<'a> Lined<'a> {
         let free = space.get().map(|space| with_bars(evidence, space));
         let scene = evidence.scene();
         let uprights = uprights::find(&evidence.grid.frame, &evidence.gradients.pixels);
-        let on_legs = legs::find(&scene, &uprights);
+        let racks = legs::find(&scene, &uprights);
+        let on_legs: Vec<Row> = racks.iter().map(|rack| rack.row.clone()).collect();
         let views = map_each(evidence.directions.angles.len(), evidence.threads, |direction| {
             let mut view = Turned::new(&scene, direction, &on_legs);
+            view.take_pitches(&racks);
             view.line(evidence);
             view
         });

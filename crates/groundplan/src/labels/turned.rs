@@ -3,6 +3,7 @@
 
 use super::framed;
 use super::grounds::Grounds;
+use super::legs::{Pitches, Rack};
 use super::lined::Lined;
 use super::look::{LANES, Look};
 use super::panes::{Across, Pane};
@@ -47,6 +48,8 @@ pub struct Turned {
     pub pitch: Option<f64>,
     /// The same by frames that stand alone, which counts where too few posts recur.
     framed: Option<f64>,
+    /// That of its racks on legs.
+    on_legs: Arc<Pitches>,
     /// By what recurs along its lines, about each row.
     by_rows: Option<Arc<Pitch>>,
     /// Offsets of the direction's lines, ascending.
@@ -90,6 +93,7 @@ impl Turned {
         made.lie(&scene.grid.frame, &self.lined);
         made.lined = Arc::clone(&self.lined);
         made.framed = self.framed;
+        made.on_legs = Arc::clone(&self.on_legs);
         made
     }
 
@@ -119,6 +123,7 @@ impl Turned {
             samples,
             pitch: None,
             framed: None,
+            on_legs: Arc::default(),
             by_rows: None,
             offsets: Arc::default(),
             covered: Arc::default(),
@@ -165,6 +170,11 @@ impl Turned {
         self.framed = framed::pitch(uprights, self.heading);
     }
 
+    /// Takes the pitches of its own of some racks on legs.
+    pub fn take_pitches(&mut self, racks: &[Rack]) {
+        self.on_legs = Arc::new(Pitches::of(self.direction, racks));
+    }
+
     /// Finds what recurs along the lines of what is seen; of the gradients the specks are asked.
     pub fn recur(&mut self, evidence: &Evidence) {
         let found = pitch::find(evidence, self);
@@ -175,9 +185,11 @@ impl Turned {
         }
     }
 
-    /// From post to post along a row, metres: where posts recur in some rows of the view, as about that one.
+    /// From post to post along a row, metres: as of the racks on legs in it, and where posts recur in some rows of the view, as
+    /// about that one.
     pub fn pitch_of(&self, row: &Row) -> Option<f64> {
-        self.by_rows.as_ref().map_or(self.pitch, |pitch| pitch.about(row))
+        let about = || self.by_rows.as_ref().map_or(self.pitch, |pitch| pitch.about(row));
+        self.on_legs.about(row).or_else(about)
     }
 
     /// Lets go of all that is seen: what is left says where places are.
@@ -221,6 +233,7 @@ impl Turned {
             across: Arc::clone(&self.across),
             rows: Arc::clone(&self.rows),
             grounds: Grounds::default(),
+            on_legs: Arc::clone(&self.on_legs),
             by_rows: self.by_rows.clone(),
             keys: (self.keys.0, Arc::clone(&self.keys.1)),
             ..*self
