@@ -343,7 +343,7 @@ fn back_to_back(mut racks: Vec<Rack>) -> Vec<Rack> {
         let is_back = |other: &&mut Rack| {
             let other = &other.row;
             row.across[0] - other.across[1] <= BACK
-                && overlap(row.along, other.along) >= SHARED * row.length().max(other.length())
+                && overlap(row.along, other.along) >= SHARED * row.length().min(other.length())
         };
         let near = whole.iter_mut().rev().take_while(|other| row.across[0] - other.row.across[0] <= AISLE);
         if let Some(whole) = near.into_iter().find(is_back) {

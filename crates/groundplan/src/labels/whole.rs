@@ -10,11 +10,14 @@ use super::rows::{Crossings, Row, SHORTEST, heaviest};
 use super::shut::sign;
 use super::turned::Turned;
 use crate::bands::flat_map_each;
-use crate::ends::{shared, wider};
+use crate::ends::{both, overlap, shared, wider};
 use std::ops::Range;
 
 /// So many times its length a row counts whose two faces are seen.
 const SEEN_BOTH: f64 = 1.3;
+/// Legs stand so far beyond a row's faces at most, metres, and what goes on beyond the last of them for less is no bay.
+const FACE: f64 = 0.3;
+const BAY: f64 = 1.0;
 /// What stands so near to a row's faces is of it, metres.
 pub const RIM: f64 = 0.1;
 /// A row is followed in steps of this, metres, and goes on where before one of its faces more than that share of a step
@@ -70,7 +73,8 @@ pub fn find(
     let met = blocks::overlapping(views, &blocks, on_legs);
     let mut met = met.into_iter();
     blocks.retain(|_| met.next().is_some_and(|racks| racks.is_empty()));
-    blocks.extend_from_slice(on_legs);
+    let met = blocks::overlapping(views, on_legs, &found);
+    blocks.extend(on_legs.iter().zip(met).map(|(rack, met)| in_row(rack, met.into_iter().map(|n| &found[n]))));
     let met = blocks::overlapping(views, &blocks, rows);
     for (block, met) in blocks.iter_mut().zip(met) {
         block.between = met.into_iter().find_map(|n| rows[n].between);
@@ -84,6 +88,25 @@ pub fn find(
     let mut weighed: Vec<(f64, Row)> = found.into_iter().zip(met).map(weigh).collect();
     weighed.extend(blocks.into_iter().map(|row| (SEEN_BOTH * row.length(), row)));
     heaviest(views, weighed)
+}
+
+/// A rack on legs as far as the row goes in which it lies: of the frames beyond goods may hide one leg or both, and of two racks
+/// back to back all of the one.
+fn in_row<'a>(rack: &Row, rows: impl Iterator<Item = &'a Row>) -> Row {
+    let mut whole = rack.clone();
+    for row in rows {
+        let is_within = row.direction == rack.direction
+            && row.across[0] <= rack.across[0] + FACE
+            && rack.across[1] <= row.across[1] + FACE
+            && overlap(rack.along, row.along) > rack.length() / 2.0;
+        if is_within {
+            let [before, beyond] = [whole.along[0] - row.along[0], row.along[1] - whole.along[1]];
+            whole.along[0] -= if before >= BAY { before } else { 0.0 };
+            whole.along[1] += if beyond >= BAY { beyond } else { 0.0 };
+            whole.across = both(whole.across, row.across);
+        }
+    }
+    whole
 }
 
 /// Racks without what ways lead through of them: between pieces of one block of goods these may be as narrow as gaps.
@@ -235,5 +258,20 @@ mod tests {
         assert_eq!(depths(&rooms), []);
         let racks = [row(1.0, None), row(2.25, Some([0, 1])), row(1.125, None), row(3.5, None)];
         assert_eq!(depths(&racks), [1.0, 2.25, 1.125]);
+    }
+
+    #[test]
+    fn a_rack_on_legs_goes_as_far_as_the_row_in_which_it_lies() {
+        let row = |along: [f64; 2], across: [f64; 2]| Row { direction: 0, along, across, between: None };
+        let rack = row([0.0, 10.0], [0.0, 1.0]);
+        let whole = |other: Row| {
+            let whole = in_row(&rack, [&other].into_iter());
+            (whole.along, whole.across)
+        };
+        assert_eq!(whole(row([-0.5, 12.7], [0.0, 1.0])), ([0.0, 12.7], [0.0, 1.0]));
+        assert_eq!(whole(row([0.0, 10.0], [0.1, 2.3])), ([0.0, 10.0], [0.0, 2.3]));
+        // What lies before it is none of it, nor what is not as deep.
+        assert_eq!(whole(row([8.0, 20.0], [0.0, 1.0])), ([0.0, 10.0], [0.0, 1.0]));
+        assert_eq!(whole(row([0.0, 20.0], [0.5, 1.0])), ([0.0, 10.0], [0.0, 1.0]));
     }
 }
