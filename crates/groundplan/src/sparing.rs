@@ -33,19 +33,21 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
     let mut structure = Structure::new(grid, parameters, &mut given, threads);
     let count = structure.gradients.pixels.len();
     let arranged = |of: &Structure| arrange(frame, &of.directions.angles, &of.lines, threads);
-    let sums = given.sums;
-    let summed = |arrangement: &_| match &sums {
-        Some(sums) if sums.fits(arrangement) => Cow::Borrowed(sums),
-        _ => Cow::Owned(FaceSums::new(grid, arrangement, 0..frame.height, threads)),
-    };
     // What the labels ask of the faces: what they mostly are and their middles. And the lines that have edges.
-    let (subdivision, occupancy, mut coverage) = {
+    let (subdivision, occupancy, mut coverage, given, under) = {
         let arrangement = arranged(&structure);
+        let given = given.sums.filter(|sums| sums.fits(&arrangement));
+        let sums = match &given {
+            Some(sums) => Cow::Borrowed(sums),
+            None => Cow::Owned(FaceSums::new(grid, &arrangement, 0..frame.height, threads)),
+        };
         let Structure { directions, lines, .. } = &structure;
         let coverage = Coverage::new(frame, &arrangement, directions, lines, parameters);
-        let occupancy = Occupancy::states_of(&summed(&arrangement));
+        let occupancy = Occupancy::states_of(&sums);
+        let under = sums.under.clone();
+        drop(sums);
         let centres = Subdivision::new(frame, arrangement, threads).centres;
-        (Subdivision { centres, ..Subdivision::default() }, occupancy, coverage)
+        (Subdivision { centres, ..Subdivision::default() }, occupancy, coverage, given, under)
     };
     coverage.add(&structure.gradients, threads);
     let lined = {
@@ -65,10 +67,11 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
 
     let mut arrangement = arranged(&structure);
     let occupancy = {
-        let sums = summed(&arrangement);
         // Walls are found from the edges alone.
-        let Arrangement { face_halves, face_offsets, edge_lines, rows_below, .. } = &mut arrangement;
-        for list in [face_halves, face_offsets, edge_lines, rows_below] {
+        arrangement.face_halves = Vec::new();
+        let sums = given.unwrap_or_else(|| FaceSums::again(grid, &arrangement, under, threads));
+        let Arrangement { face_offsets, edge_lines, rows_below, .. } = &mut arrangement;
+        for list in [face_offsets, edge_lines, rows_below] {
             *list = Vec::new();
         }
         Occupancy::of_faces(&sums)

@@ -49,6 +49,11 @@ impl FaceSums {
         Self { within, under }
     }
 
+    /// The same again of what lacks the faces' half-edges: what they were needed for, the slivers, is known.
+    pub(crate) fn again(grid: &Grid, arrangement: &Arrangement, under: Vec<(u32, Sums)>, threads: usize) -> Self {
+        Self { within: face_sums(grid, arrangement, 0..grid.frame.height, threads), under }
+    }
+
     /// True when they are of as many faces as there are.
     #[must_use]
     pub fn fits(&self, arrangement: &Arrangement) -> bool {
