@@ -5,7 +5,7 @@
 
 use super::Scene;
 use super::blocks;
-use super::frames::{AISLE, BACK, Frame, Legs, NEAR, frames};
+use super::frames::{AISLE, BACK, Frame, LEG, Legs, NEAR, frames};
 use super::grounds::on_map;
 use super::near::Near;
 use super::rows::Row;
@@ -189,10 +189,12 @@ fn gap(row: &[Frame]) -> Option<f64> {
 
 /// The pieces of a row of frames whose gaps are alike, but for frames of which one leg was not seen.
 fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs) -> Vec<Vec<Frame>> {
-    // A plate and the legs that it joins are one frame.
+    // A plate and the legs that it joins are one frame, and so is what a map shows twice.
     row.dedup_by(|next, frame| {
-        let is_same = next.at - frame.at <= NEAR;
-        frame.is_plate |= is_same && next.is_plate;
+        let is_same = next.at - frame.at <= LEG;
+        if is_same {
+            *frame = Frame { at: f64::midpoint(frame.at, next.at), is_plate: frame.is_plate || next.is_plate, ..*frame };
+        }
         is_same
     });
     let mut found = Vec::new();
