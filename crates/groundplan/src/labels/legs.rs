@@ -57,6 +57,8 @@ pub struct Rack {
     /// From frame to frame, metres.
     pub pitch: f64,
     frames: usize,
+    /// How deep these are, metres.
+    depth: f64,
     /// A plate is the first of them, and the last.
     closed: [bool; 2],
     /// It is two, back to back.
@@ -193,7 +195,8 @@ fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs) -> Vec<Vec<Frame>> {
     row.dedup_by(|next, frame| {
         let is_same = next.at - frame.at <= LEG;
         if is_same {
-            *frame = Frame { at: f64::midpoint(frame.at, next.at), is_plate: frame.is_plate || next.is_plate, ..*frame };
+            *frame =
+                Frame { at: f64::midpoint(frame.at, next.at), is_plate: frame.is_plate || next.is_plate, ..*frame };
         }
         is_same
     });
@@ -261,7 +264,8 @@ fn rack(direction: usize, row: &[Frame], legs: &Legs, map: &Map) -> Rack {
     };
     let along = [up_to_wall(first + below, -pitch, closed[0]), up_to_wall(last + above, pitch, closed[1])];
     let frames = ((along[1] - along[0]) / pitch).round() as usize + 1;
-    Rack { row: Row { direction, along, across, between: None }, pitch, frames, closed, is_double: false }
+    let row = Row { direction, along, across, between: None };
+    Rack { depth: row.depth(), row, pitch, frames, closed, is_double: false }
 }
 
 /// The rack that a frame is of which stands beside another one and has frames at its places, but for some that are lost
@@ -371,9 +375,8 @@ fn is_no_table(rack: &Rack) -> bool {
 /// True when there are enough of a rack's kind: as deep and with bays as long, or both of two back to back; or with bays of one
 /// length side by side and in step. Of what is no table one is enough.
 fn is_kind(rack: &Rack, all: &[Rack]) -> bool {
-    let depth = rack.row.depth();
     let alike = |other: &&Rack| {
-        (other.row.depth() - depth).abs() <= NEAR
+        (other.depth - rack.depth).abs() <= NEAR
             && ((other.pitch - rack.pitch).abs() <= ALIKE * rack.pitch || rack.is_double && other.is_double)
     };
     let in_step = |other: &&Rack| {
@@ -409,11 +412,27 @@ mod tests {
     fn frames_at_one_place_are_one_and_the_rack_of_them_ends() {
         let frame = |at: f64| Frame { at, faces: [0.0, 1.1], is_plate: false };
         let (_, legs) = frames(&[], EAST);
-        let places = [0.0, 0.0, 0.1, 2.0, 2.0, 4.0, 4.05, 6.0];
+        let places = [-0.125, 0.125, 2.0, 2.0, 3.875, 4.125, 6.0];
         let rows = at_one_pitch(places.map(frame).to_vec(), &legs);
         assert_eq!(rows.len(), 1);
         let rack = on_map(|_, _| false, EAST, |map| rack(0, &rows[0], &legs, map));
         assert_eq!((rack.frames, rack.pitch, rack.row.along), (4, 2.0, [0.0, 6.0]));
+    }
+
+    #[test]
+    fn two_racks_back_to_back_are_of_a_kind_with_one_as_deep() {
+        let rack = |low: f64, depth: f64, pitch: f64| {
+            let row = Row { direction: 0, along: [0.0, 4.0 * pitch], across: [low, low + depth], between: None };
+            Rack { row, pitch, frames: 5, depth, closed: [false; 2], is_double: false }
+        };
+        let are_kinds = |others: &[Rack]| {
+            let all = back_to_back([&[rack(0.0, 0.9, 0.95), rack(1.1, 0.9, 0.95)], others].concat());
+            all.iter().map(|rack| is_kind(rack, &all)).collect::<Vec<_>>()
+        };
+        assert_eq!(are_kinds(&[]), [false]);
+        assert_eq!(are_kinds(&[rack(5.0, 0.9, 0.95)]), [true, true]);
+        assert_eq!(are_kinds(&[rack(5.0, 2.0, 0.95)]), [false, false]);
+        assert_eq!(are_kinds(&[rack(5.0, 0.9, 1.1)]), [false, false]);
     }
 
     #[test]
