@@ -74,10 +74,11 @@ pub fn find(scene: &Scene, uprights: &[Upright]) -> Vec<Rack> {
         let heading = [libm::cos(angle), libm::sin(angle)];
         let (frames, legs) = frames(uprights, heading);
         let map = Map { grid, heading };
-        let rows = in_rows(&frames, &legs);
+        let rows = in_rows(&frames, &legs, &map);
         let mut found: Vec<Rack> = rows.iter().map(|row| rack(direction, row, &legs, &map)).collect();
         found.retain(|rack| blocks::is_oblong(&rack.row) && map.shows_floor(&rack.row));
-        let found = back_to_back(found);
+        let mut found = back_to_back(found);
+        found.retain(|rack| !map.goes_on(rack));
         let mut found: Vec<Rack> = found.iter().filter(|rack| is_kind(rack, &found)).cloned().collect();
         let leaning: Vec<Rack> = frames.iter().filter_map(|frame| leaning(&map, &found, &frames, frame)).collect();
         found.extend(leaning);
@@ -151,7 +152,7 @@ impl Pitches {
 }
 
 /// Frames that follow one another at one pitch.
-fn in_rows(frames: &[Frame], legs: &Legs) -> Vec<Vec<Frame>> {
+fn in_rows(frames: &[Frame], legs: &Legs, map: &Map) -> Vec<Vec<Frame>> {
     // By strips as wide as legs may be off.
     let strip = |frame: &Frame| (frame.faces[0] / NEAR).floor() as i64;
     let mut strips: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
@@ -177,7 +178,7 @@ fn in_rows(frames: &[Frame], legs: &Legs) -> Vec<Vec<Frame>> {
             taken[other] = true;
             row.push(other);
         }
-        rows.extend(at_one_pitch(row.iter().map(|&n| frames[n]).collect(), legs));
+        rows.extend(at_one_pitch(row.iter().map(|&n| frames[n]).collect(), legs, map));
     }
     rows
 }
@@ -190,7 +191,7 @@ fn gap(row: &[Frame]) -> Option<f64> {
 }
 
 /// The pieces of a row of frames whose gaps are alike, but for frames of which one leg was not seen.
-fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs) -> Vec<Vec<Frame>> {
+fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs, map: &Map) -> Vec<Vec<Frame>> {
     // A plate and the legs that it joins are one frame, and so is what a map shows twice.
     row.dedup_by(|next, frame| {
         let is_same = next.at - frame.at <= LEG;
@@ -203,7 +204,7 @@ fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs) -> Vec<Vec<Frame>> {
     let mut found = Vec::new();
     let mut left = vec![&row[..]];
     while let Some(some) = left.pop() {
-        let pieces = pieces(some, legs);
+        let pieces = pieces(some, legs, map);
         let mut first = 0;
         for others in pieces.chunk_by(|a, b| a.len() < FRAMES && b.len() < FRAMES) {
             let frames = &some[first..first + others.iter().map(|piece| piece.len()).sum::<usize>()];
@@ -221,7 +222,7 @@ fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs) -> Vec<Vec<Frame>> {
 }
 
 /// A row of frames, parted where one does not follow another at the pitch of most; nothing where that is no rack's.
-fn pieces<'a>(row: &'a [Frame], legs: &Legs) -> Vec<&'a [Frame]> {
+fn pieces<'a>(row: &'a [Frame], legs: &Legs, map: &Map) -> Vec<&'a [Frame]> {
     let Some(pitch) = gap(row).filter(|pitch| (PITCH[0].max(OBLONG * row[0].depth())..=PITCH[1]).contains(pitch))
     else {
         return Vec::new();
@@ -235,7 +236,7 @@ fn pieces<'a>(row: &'a [Frame], legs: &Legs) -> Vec<&'a [Frame]> {
         let bays = ((b.at - a.at) / pitch).round();
         let is_whole = (b.at - a.at - bays * pitch).abs() <= NEAR;
         let mut between = (1..bays as usize).map(|n| a.at + (b.at - a.at) * n as f64 / bays);
-        is_whole && between.all(|at| legs.stand_at(at, a.faces))
+        is_whole && between.all(|at| legs.stand_at(at, a.faces) || map.taken(at, a.faces) >= LOST)
     };
     row.chunk_by(is_next).collect()
 }
@@ -287,7 +288,7 @@ fn leaning(map: &Map, racks: &[Rack], frames: &[Frame], frame: &Frame) -> Option
             near.filter(|other| frame.is_in_line(other.faces)).count()
         };
         let (own, lost): (Vec<f64>, Vec<f64>) = (0..rack.frames).map(place).partition(|&place| at(place) > 0);
-        let is_one = own.len() >= LEANING && lost.into_iter().all(|place| map.stands(place, frame.faces));
+        let is_one = own.len() >= LEANING && lost.into_iter().all(|place| map.taken(place, frame.faces) >= LOST);
         let row = Row { across: frame.faces, ..rack.row.clone() };
         (is_one && map.shows_floor(&row)).then(|| Rack { row, ..rack.clone() })
     })
@@ -305,11 +306,22 @@ impl Map<'_> {
         self.grid.state_at([u * cos - v * sin, u * sin + v * cos])
     }
 
-    /// True when something stands across so much of a row's depth at a place along it.
-    fn stands(&self, at: f64, faces: [f64; 2]) -> bool {
+    /// True when what most of a rack's frames are of goes on past a face, and nothing does between them: rows that it lies
+    /// across.
+    fn goes_on(&self, rack: &Rack) -> bool {
+        let beyond = |[low, high]: [f64; 2]| [[low - FRONT[1], low], [high, high + FRONT[1]]];
+        beyond(rack.row.across).into_iter().any(|beyond| {
+            let taken = |place: f64| self.taken(rack.row.along[0] + place * rack.pitch, beyond);
+            let at_frames = (0..rack.frames).filter(|&n| taken(n as f64) >= WALL).count();
+            let between = (1..rack.frames).filter(|&n| taken(n as f64 - 0.5) >= LOST).count();
+            2 * at_frames > rack.frames && 2 * between < rack.frames
+        })
+    }
+
+    /// Over how much of a row's depth something stands at a place along it.
+    fn taken(&self, at: f64, faces: [f64; 2]) -> f64 {
         let is_taken = |v: &f64| steps([at - NEAR, at + NEAR], STEP).any(|u| self.state([u, *v]) == State::Occupied);
-        let taken = steps(faces, STEP).filter(is_taken).count();
-        taken as f64 >= LOST * steps(faces, STEP).count() as f64
+        steps(faces, STEP).filter(is_taken).count() as f64 / steps(faces, STEP).count() as f64
     }
 
     /// True when a wall runs across a row and past both its faces somewhere between two places along it, or where it ends.
@@ -413,9 +425,16 @@ mod tests {
         let frame = |at: f64| Frame { at, faces: [0.0, 1.1], is_plate: false };
         let (_, legs) = frames(&[], EAST);
         let places = [-0.125, 0.125, 2.0, 2.0, 3.875, 4.125, 6.0];
-        let rows = at_one_pitch(places.map(frame).to_vec(), &legs);
-        assert_eq!(rows.len(), 1);
-        let rack = on_map(|_, _| false, EAST, |map| rack(0, &rows[0], &legs, map));
+        let (rows, rack) = on_map(
+            |_, _| false,
+            EAST,
+            |map| {
+                let rows = at_one_pitch(places.map(frame).to_vec(), &legs, map);
+                let rack = rack(0, &rows[0], &legs, map);
+                (rows.len(), rack)
+            },
+        );
+        assert_eq!(rows, 1);
         assert_eq!((rack.frames, rack.pitch, rack.row.along), (4, 2.0, [0.0, 6.0]));
     }
 
