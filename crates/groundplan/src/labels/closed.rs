@@ -13,6 +13,7 @@ const ROWS: usize = 3;
 const SEVERAL: usize = 2;
 /// Of more than so many for each row some are empty bays, and which is not told.
 const MANY: f64 = 1.25;
+const OF_ALL: f64 = 2.0;
 /// Bays recur by so much less than a gap is wide, metres, where goods stand back from it, to so much more, where posts stand
 /// between them, tried in such steps.
 const RECUR: (f64, f64) = (-0.35, 0.3);
@@ -20,42 +21,51 @@ const STEP: f64 = 0.01;
 /// What stands between gaps is known to so much, metres.
 const OFF: f64 = 0.2;
 
-/// True when several ways as wide as one lead through some of the rows of its part of a place between their ends, next to
-/// nothing of these rows is open elsewhere, and what stands beside the gaps is no whole number of bays as wide.
+/// True when several ways lead through some of the rows of one's part of a place between their ends, next to nothing of these
+/// rows is open elsewhere, and what stands beside the gaps is no whole number of bays: of those that are as wide as that one, or
+/// of all of them.
 pub fn is_way(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> bool {
     let Some(first) = place.first_of(own).filter(|_| own.is_within) else { return false };
     let part = place.rows_with(first);
-    let is_like = |way: &usize| {
-        let passing = &place.passing[*way];
-        passing.is_within && !passing.is_whole() && are_alike(strips[*way].width(), width)
+    let is_within = |way: &usize| place.passing[*way].is_within && !place.passing[*way].is_whole();
+    let all: BTreeSet<usize> = part.iter().flat_map(|&row| &place.through[row]).copied().filter(is_within).collect();
+    let widths = |are: &dyn Fn(f64) -> bool| -> Vec<f64> {
+        all.iter().map(|&way| strips[way].width()).filter(|&width| are(width)).collect()
     };
-    let alike: BTreeSet<usize> = part.iter().flat_map(|&row| &place.through[row]).copied().filter(is_like).collect();
-    let view = place.views[0];
-    let rest = || Rest::but_for_wider(view, part.iter().map(|&row| place.shelves(row)), width);
-    let is_count = (SEVERAL as f64..=MANY * part.len() as f64).contains(&(alike.len() as f64));
-    if part.len() < ROWS || !is_count || !rest().is_closed() {
-        return false;
-    }
-    let least = AS_WIDE * width / view.cell;
+    let are_ways = |widths: &[f64], many: f64, least: f64| {
+        let is_count = (SEVERAL as f64..=many * part.len() as f64).contains(&(widths.len() as f64));
+        let rest = || Rest::but_for_wider(place.views[0], part.iter().map(|&row| place.shelves(row)), least);
+        is_count && rest().is_closed() && !are_bays(&standing(place, &part, least), widths)
+    };
+    let alike = widths(&|other| are_alike(other, width));
+    let widths = widths(&|_| true);
+    let least = widths.iter().copied().fold(width, f64::min);
+    part.len() >= ROWS && are_ways(&alike, MANY, width) || are_ways(&widths, OF_ALL, least)
+}
+
+/// How long what stands of some rows is, between gaps no narrower than so much, metres.
+fn standing(place: &Place, rows: &BTreeSet<usize>, least: f64) -> Vec<f64> {
+    let cell = place.views[0].cell;
     // What is open up to a row's end is before it, however short.
-    let standing = part.iter().flat_map(|&row| {
+    let standing = rows.iter().flat_map(|&row| {
         let shelves = place.shelves(row);
         let mut open = shelves.open();
-        open.retain(|&(from, to)| shelves.is_end((from, to)) || (to - from) as f64 >= least);
+        open.retain(|&(from, to)| shelves.is_end((from, to)) || (to - from) as f64 >= AS_WIDE * least / cell);
         let has_gaps = open.iter().any(|&run| !shelves.is_end(run));
         if has_gaps { outside(&[(0, shelves.count())], &open) } else { Vec::new() }
     });
-    let lengths: Vec<f64> = standing.map(|(from, to)| (to - from) as f64 * view.cell).collect();
-    let widths: f64 = alike.iter().map(|&way| strips[way].width()).sum();
-    !are_bays(&lengths, widths / alike.len() as f64)
+    standing.map(|(from, to)| (to - from) as f64 * cell).collect()
 }
 
-/// True when all of some lengths may be whole numbers of bays of a width with what stands between them, metres.
-fn are_bays(lengths: &[f64], width: f64) -> bool {
-    let is_whole = |length: f64, pitch: f64| (length - (length / pitch).round() * pitch).abs() <= OFF;
+/// True when all of some lengths may be whole numbers of bays with what stands between them, and gaps of some widths too, the
+/// narrowest of one bay; metres.
+fn are_bays(lengths: &[f64], widths: &[f64]) -> bool {
+    let narrowest = widths.iter().copied().fold(f64::INFINITY, f64::min);
+    let off = |length: f64, pitch: f64| length - (length / pitch).round() * pitch;
     (0..=((RECUR.1 - RECUR.0) / STEP) as usize).any(|n| {
-        let pitch = width + RECUR.0 + n as f64 * STEP;
-        lengths.iter().all(|&length| is_whole(length, pitch))
+        let pitch = narrowest + RECUR.0 + n as f64 * STEP;
+        lengths.iter().all(|&length| off(length, pitch).abs() <= OFF)
+            && widths.iter().all(|&width| (-RECUR.1..=-RECUR.0).contains(&off(width, pitch)))
     })
 }
 
@@ -66,9 +76,9 @@ mod tests {
     #[test]
     fn what_stands_between_empty_bays_is_a_whole_number_of_bays() {
         // Bays of 2.7 m, of which 0.1 m is a post.
-        assert!(are_bays(&[2.8, 8.2, 16.3, 27.1], 2.6));
-        assert!(are_bays(&[21.6, 8.1, 16.2, 43.2, 5.4], 2.75));
-        assert!(!are_bays(&[2.8, 8.2, 17.5, 27.1], 2.6));
-        assert!(!are_bays(&[9.6, 21.5], 3.0));
+        assert!(are_bays(&[2.8, 8.2, 16.3, 27.1], &[2.6]));
+        assert!(are_bays(&[21.6, 8.1, 16.2, 43.2, 5.4], &[2.75]));
+        assert!(!are_bays(&[2.8, 8.2, 17.5, 27.1], &[2.6]));
+        assert!(!are_bays(&[9.6, 21.5], &[3.0]));
     }
 }
