@@ -32,15 +32,21 @@ pub fn is_way(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> boo
     let widths = |are: &dyn Fn(f64) -> bool| -> Vec<f64> {
         all.iter().map(|&way| strips[way].width()).filter(|&width| are(width)).collect()
     };
-    let are_ways = |widths: &[f64], many: f64, least: f64| {
+    let rest = |least: f64| Rest::but_for_wider(place.views[0], part.iter().map(|&row| place.shelves(row)), least);
+    let are_ways = |widths: &[f64], many: f64, rest: &Rest, least: f64| {
         let is_count = (SEVERAL as f64..=many * part.len() as f64).contains(&(widths.len() as f64));
-        let rest = || Rest::but_for_wider(place.views[0], part.iter().map(|&row| place.shelves(row)), least);
-        is_count && rest().is_closed() && !are_bays(&standing(place, &part, least), widths)
+        is_count && rest.is_closed() && !are_bays(&standing(place, &part, least), widths)
     };
     let alike = widths(&|other| are_alike(other, width));
+    if part.len() >= ROWS && are_ways(&alike, MANY, &rest(width), width) {
+        return true;
+    }
     let widths = widths(&|_| true);
     let least = widths.iter().copied().fold(width, f64::min);
-    part.len() >= ROWS && are_ways(&alike, MANY, width) || are_ways(&widths, OF_ALL, least)
+    let rest = rest(least);
+    let through: usize = part.iter().map(|&row| place.through[row].iter().filter(|way| is_within(way)).count()).sum();
+    // Where as much is open beside something that stands in it, that is an empty bay.
+    rest.open() == through && are_ways(&widths, OF_ALL, &rest, least)
 }
 
 /// How long what stands of some rows is, between gaps no narrower than so much, metres.

@@ -96,11 +96,14 @@ impl<'a> Rest<'a> {
         Self { view, rows, width: width / view.cell, halves, free }
     }
 
+    /// At how many places, but for those past their ends, the rows are open that were left out.
+    pub fn open(&self) -> usize {
+        self.rows.iter().map(|row| row.open).sum()
+    }
+
     /// True when the rows are of two racks and stand solid but for several places, however many each has.
     pub fn is_solid(&self) -> bool {
-        self.rows.iter().map(|row| row.open).sum::<usize>() >= SEVERAL
-            && self.rows.iter().all(|row| is_double(&row.shelves.row))
-            && self.is_closed()
+        self.open() >= SEVERAL && self.rows.iter().all(|row| is_double(&row.shelves.row)) && self.is_closed()
     }
 
     /// True when next to nothing of the rows is open but for those places, and something stands all along their faces.
@@ -115,8 +118,7 @@ impl<'a> Rest<'a> {
         // Half a place more is open and one more is there, as so few tell little.
         let share = (self.free + 0.5 * self.width) / (self.halves + self.width);
         let by_chance = self.halves / 2.0 / self.width * share * share;
-        let open: usize = self.rows.iter().map(|row| row.open).sum();
-        self.rows.iter().all(|row| row.open == self.rows[0].open) && likely(open, by_chance) < UNLIKELY_IN_FULL
+        self.rows.iter().all(|row| row.open == self.rows[0].open) && likely(self.open(), by_chance) < UNLIKELY_IN_FULL
     }
 }
 
