@@ -236,7 +236,7 @@ fn pieces<'a>(row: &'a [Frame], legs: &Legs, map: &Map) -> Vec<&'a [Frame]> {
         let bays = ((b.at - a.at) / pitch).round();
         let is_whole = (b.at - a.at - bays * pitch).abs() <= NEAR;
         let mut between = (1..bays as usize).map(|n| a.at + (b.at - a.at) * n as f64 / bays);
-        is_whole && between.all(|at| legs.stand_at(at, a.faces) || map.taken(at, a.faces) >= LOST)
+        is_whole && between.all(|at| legs.stand_at(at, a.faces) || map.stands(at, a.faces))
     };
     row.chunk_by(is_next).collect()
 }
@@ -288,7 +288,7 @@ fn leaning(map: &Map, racks: &[Rack], frames: &[Frame], frame: &Frame) -> Option
             near.filter(|other| frame.is_in_line(other.faces)).count()
         };
         let (own, lost): (Vec<f64>, Vec<f64>) = (0..rack.frames).map(place).partition(|&place| at(place) > 0);
-        let is_one = own.len() >= LEANING && lost.into_iter().all(|place| map.taken(place, frame.faces) >= LOST);
+        let is_one = own.len() >= LEANING && lost.into_iter().all(|place| map.stands(place, frame.faces));
         let row = Row { across: frame.faces, ..rack.row.clone() };
         (is_one && map.shows_floor(&row)).then(|| Rack { row, ..rack.clone() })
     })
@@ -311,16 +311,24 @@ impl Map<'_> {
     fn goes_on(&self, rack: &Rack) -> bool {
         let beyond = |[low, high]: [f64; 2]| [[low - FRONT[1], low], [high, high + FRONT[1]]];
         beyond(rack.row.across).into_iter().any(|beyond| {
-            let taken = |place: f64| self.taken(rack.row.along[0] + place * rack.pitch, beyond);
+            let taken = |place: f64| {
+                let at = rack.row.along[0] + place * rack.pitch;
+                self.share(at, beyond, |state| state != State::Free)
+            };
             let at_frames = (0..rack.frames).filter(|&n| taken(n as f64) >= WALL).count();
             let between = (1..rack.frames).filter(|&n| taken(n as f64 - 0.5) >= LOST).count();
             2 * at_frames > rack.frames && 2 * between < rack.frames
         })
     }
 
-    /// Over how much of a row's depth something stands at a place along it.
-    fn taken(&self, at: f64, faces: [f64; 2]) -> f64 {
-        let is_taken = |v: &f64| steps([at - NEAR, at + NEAR], STEP).any(|u| self.state([u, *v]) == State::Occupied);
+    /// True when something stands across so much of a row's depth at a place along it.
+    fn stands(&self, at: f64, faces: [f64; 2]) -> bool {
+        self.share(at, faces, |state| state == State::Occupied) >= LOST
+    }
+
+    /// Over how much of a row's depth it is so at a place along it.
+    fn share(&self, at: f64, faces: [f64; 2], is: impl Fn(State) -> bool) -> f64 {
+        let is_taken = |v: &f64| steps([at - NEAR, at + NEAR], STEP).any(|u| is(self.state([u, *v])));
         steps(faces, STEP).filter(is_taken).count() as f64 / steps(faces, STEP).count() as f64
     }
 
