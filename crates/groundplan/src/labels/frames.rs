@@ -186,7 +186,10 @@ impl Legs {
         let ends = |leg: [f64; 2]| gap(leg).is_none_or(|(gap, _)| depth <= NEARER * gap);
         match gap(leg) {
             Some((one, far)) if is_frame(one) => ends(far),
-            Some((one, far)) if one <= BACK => gap(far).is_some_and(|(two, far)| is_frame(two) && ends(far)),
+            // Goods may hide the other leg of the frame beyond.
+            Some((one, far)) if one <= BACK => {
+                gap(far).is_none_or(|(two, far)| if is_frame(two) { ends(far) } else { depth <= NEARER * two })
+            }
             _ => ends(leg),
         }
     }

@@ -236,7 +236,7 @@ fn pieces<'a>(row: &'a [Frame], legs: &Legs, map: &Map) -> Vec<&'a [Frame]> {
         let bays = ((b.at - a.at) / pitch).round();
         let is_whole = (b.at - a.at - bays * pitch).abs() <= NEAR;
         let mut between = (1..bays as usize).map(|n| a.at + (b.at - a.at) * n as f64 / bays);
-        is_whole && between.all(|at| legs.stand_at(at, a.faces) || map.stands(at, a.faces))
+        is_whole && between.all(|at| legs.stand_at(at, a.faces) || map.is_hidden(at, a.faces))
     };
     row.chunk_by(is_next).collect()
 }
@@ -319,6 +319,12 @@ impl Map<'_> {
             let between = (1..rack.frames).filter(|&n| taken(n as f64 - 0.5) >= LOST).count();
             2 * at_frames > rack.frames && 2 * between < rack.frames
         })
+    }
+
+    /// True when goods at a place along a row hide what stands there, on either side of it: a plate is thinner.
+    fn is_hidden(&self, at: f64, faces: [f64; 2]) -> bool {
+        let beside = [-LEG, LEG].map(|off| self.share(at + off, faces, |state| state != State::Free));
+        self.stands(at, faces) && beside.into_iter().any(|share| share >= LOST)
     }
 
     /// True when something stands across so much of a row's depth at a place along it.
