@@ -14,8 +14,8 @@ use crate::parameters::Parameters;
 /// One side is held over so much of what was seen, and so many metres; the other over so many, as by the end of a row.
 const HELD: f64 = 0.6;
 const HELD_METRES: [f64; 2] = [0.5, 2.0];
-/// In line with a known way, as ways lead on across rows, the ends of two rows are enough, over so many metres of each of
-/// which something stands: walls beside a gate are not so deep.
+/// Along rows, and across them in line with a known way, as ways lead on, the ends of two rows are enough, over so many metres of
+/// each of which something stands: walls beside a gate are not so deep.
 const ROW: f64 = 0.8;
 /// What is in line with another has its sides no farther than this from that one's, metres.
 const IN_LINE: f64 = 0.5;
@@ -26,6 +26,7 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
     let mut placed = placed(views, strips.iter().map(Strip::place));
     let pitches = openings::pitches(views, rows);
     let is_alike = |way: &Strip| strips.iter().any(|one| one.direction == way.direction && one.is_as_wide(way));
+    let is_along_rows = |way: &Strip| rows.iter().any(|row| row.direction == way.direction);
     for passing in strips {
         let found = openings::of(views, passing, &pitches, parameters).into_iter();
         let is_way = |opening: &Opening| {
@@ -33,7 +34,7 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
                 && is_alike(&opening.way)
                 && (is_held(opening)
                     || is_between_rows(opening)
-                        && is_led_to(views, &opening.way, &ways, &placed)
+                        && (is_along_rows(&opening.way) || is_led_to(views, &opening.way, &ways, &placed))
                         && !is_through_another(views, &opening.way, passing, &ways, &placed))
         };
         for Opening { mut way, middle, .. } in found.filter(is_way).collect::<Vec<_>>() {
