@@ -235,8 +235,13 @@ fn pieces<'a>(row: &'a [Frame], legs: &Legs, map: &Map) -> Vec<&'a [Frame]> {
         }
         let bays = ((b.at - a.at) / pitch).round();
         let is_whole = (b.at - a.at - bays * pitch).abs() <= NEAR;
-        let mut between = (1..bays as usize).map(|n| a.at + (b.at - a.at) * n as f64 / bays);
-        is_whole && between.all(|at| legs.stand_at(at, a.faces) || map.is_hidden(at, a.faces))
+        let place = |n: f64| a.at + (b.at - a.at) * n / bays;
+        let is_seen = |n: usize| legs.stand_at(place(n as f64), a.faces);
+        // Between goods that hide both its frames what is free may be a way.
+        let is_bay = |n: usize| is_seen(n) || is_seen(n + 1) || map.hides(place(n as f64 + 0.5), a.faces);
+        is_whole
+            && (1..bays as usize).all(|n| is_seen(n) || map.is_hidden(place(n as f64), a.faces))
+            && (1..(bays as usize).saturating_sub(1)).all(is_bay)
     };
     row.chunk_by(is_next).collect()
 }
@@ -323,8 +328,12 @@ impl Map<'_> {
 
     /// True when goods at a place along a row hide what stands there, on either side of it: a plate is thinner.
     fn is_hidden(&self, at: f64, faces: [f64; 2]) -> bool {
-        let beside = [-LEG, LEG].map(|off| self.share(at + off, faces, |state| state != State::Free));
-        self.stands(at, faces) && beside.into_iter().any(|share| share >= LOST)
+        self.stands(at, faces) && [-LEG, LEG].into_iter().any(|off| self.hides(at + off, faces))
+    }
+
+    /// True when across so much of a row's depth no floor shows at a place along it.
+    fn hides(&self, at: f64, faces: [f64; 2]) -> bool {
+        self.share(at, faces, |state| state != State::Free) >= LOST
     }
 
     /// True when something stands across so much of a row's depth at a place along it.
