@@ -44,8 +44,10 @@ pub(crate) fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, thr
         let Structure { directions, lines, .. } = &structure;
         let coverage = Coverage::new(frame, &arrangement, directions, lines, parameters);
         let occupancy = Occupancy::states_of(&sums);
-        let under = sums.under.clone();
-        drop(sums);
+        let under = match sums {
+            Cow::Owned(sums) => sums.under,
+            Cow::Borrowed(_) => Vec::new(),
+        };
         let centres = Subdivision::new(frame, arrangement, threads).centres;
         (Subdivision { centres, ..Subdivision::default() }, occupancy, coverage, given, under)
     };

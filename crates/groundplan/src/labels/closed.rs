@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 const ROWS: usize = 3;
 /// One gap by itself may be an empty bay of a hall in which no others are.
 const SEVERAL: usize = 2;
-/// Of more than so many for each row some are empty bays, and which is not told.
+/// Of more than so many for each row some are empty bays, and which is not told; the same of gaps of any widths.
 const MANY: f64 = 1.25;
 const OF_ALL: f64 = 2.0;
 /// Bays recur by so much less than a gap is wide, metres, where goods stand back from it, to so much more, where posts stand
@@ -22,45 +22,49 @@ const STEP: f64 = 0.01;
 const OFF: f64 = 0.2;
 
 /// True when several ways lead through some of the rows of one's part of a place between their ends, next to nothing of these
-/// rows is open elsewhere, and what stands beside the gaps is no whole number of bays: of those that are as wide as that one, or
-/// of all of them.
+/// rows is open elsewhere, and what stands beside the gaps is no whole number of bays: beside those that are as wide as that one,
+/// or of most rows beside all of them.
 pub fn is_way(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> bool {
     let Some(first) = place.first_of(own).filter(|_| own.is_within) else { return false };
     let part = place.rows_with(first);
-    let is_within = |way: &usize| place.passing[*way].is_within && !place.passing[*way].is_whole();
-    let all: BTreeSet<usize> = part.iter().flat_map(|&row| &place.through[row]).copied().filter(is_within).collect();
-    let widths = |are: &dyn Fn(f64) -> bool| -> Vec<f64> {
-        all.iter().map(|&way| strips[way].width()).filter(|&width| are(width)).collect()
-    };
+    let is_within = |way: &&usize| place.passing[**way].is_within && !place.passing[**way].is_whole();
+    let of_row = |row: usize| -> BTreeSet<usize> { place.through[row].iter().filter(is_within).copied().collect() };
+    let all: BTreeSet<usize> = part.iter().flat_map(|&row| of_row(row)).collect();
+    let widths = |ways: &BTreeSet<usize>| -> Vec<f64> { ways.iter().map(|&way| strips[way].width()).collect() };
+    let is_count = |count: usize, many: f64| (SEVERAL as f64..=many * part.len() as f64).contains(&(count as f64));
     let rest = |least: f64| Rest::but_for_wider(place.views[0], part.iter().map(|&row| place.shelves(row)), least);
-    let are_ways = |widths: &[f64], many: f64, rest: &Rest, least: f64| {
-        let is_count = (SEVERAL as f64..=many * part.len() as f64).contains(&(widths.len() as f64));
-        is_count && rest.is_closed() && !are_bays(&standing(place, &part, least), widths)
-    };
-    let alike = widths(&|other| are_alike(other, width));
-    if part.len() >= ROWS && are_ways(&alike, MANY, &rest(width), width) {
-        return true;
+
+    let mut alike = widths(&all);
+    alike.retain(|&other| are_alike(other, width));
+    if part.len() >= ROWS && is_count(alike.len(), MANY) && rest(width).is_closed() {
+        let lengths: Vec<f64> = part.iter().flat_map(|&row| standing(place, row, width)).collect();
+        if !are_bays(&lengths, &alike) {
+            return true;
+        }
     }
-    let widths = widths(&|_| true);
-    let least = widths.iter().copied().fold(width, f64::min);
+    let least = widths(&all).into_iter().fold(width, f64::min);
     let rest = rest(least);
-    let through: usize = part.iter().map(|&row| place.through[row].iter().filter(|way| is_within(way)).count()).sum();
+    let through: usize = part.iter().map(|&row| of_row(row).len()).sum();
     // Where as much is open beside something that stands in it, that is an empty bay.
-    rest.open() == through && are_ways(&widths, OF_ALL, &rest, least)
+    if !is_count(all.len(), OF_ALL) || rest.open() != through || !rest.is_closed() {
+        return false;
+    }
+    let lengths: Vec<f64> = part.iter().flat_map(|&row| standing(place, row, least)).collect();
+    // Bays of one row may be longer than those of another.
+    let open: Vec<usize> = part.into_iter().filter(|&row| !of_row(row).is_empty()).collect();
+    let have_bays = |row: &&usize| are_bays(&standing(place, **row, least), &widths(&of_row(**row)));
+    !are_bays(&lengths, &widths(&all)) && (open.len() < ROWS || 2 * open.iter().filter(have_bays).count() < open.len())
 }
 
-/// How long what stands of some rows is, between gaps no narrower than so much, metres.
-fn standing(place: &Place, rows: &BTreeSet<usize>, least: f64) -> Vec<f64> {
-    let cell = place.views[0].cell;
+/// How long what stands of a row is, between gaps no narrower than so much, metres; nothing where it has no gaps.
+fn standing(place: &Place, row: usize, least: f64) -> Vec<f64> {
+    let (cell, shelves) = (place.views[0].cell, place.shelves(row));
     // What is open up to a row's end is before it, however short.
-    let standing = rows.iter().flat_map(|&row| {
-        let shelves = place.shelves(row);
-        let mut open = shelves.open();
-        open.retain(|&(from, to)| shelves.is_end((from, to)) || (to - from) as f64 >= AS_WIDE * least / cell);
-        let has_gaps = open.iter().any(|&run| !shelves.is_end(run));
-        if has_gaps { outside(&[(0, shelves.count())], &open) } else { Vec::new() }
-    });
-    standing.map(|(from, to)| (to - from) as f64 * cell).collect()
+    let mut open = shelves.open();
+    open.retain(|&(from, to)| shelves.is_end((from, to)) || (to - from) as f64 >= AS_WIDE * least / cell);
+    let has_gaps = open.iter().any(|&run| !shelves.is_end(run));
+    let standing = if has_gaps { outside(&[(0, shelves.count())], &open) } else { Vec::new() };
+    standing.into_iter().map(|(from, to)| (to - from) as f64 * cell).collect()
 }
 
 /// True when all of some lengths may be whole numbers of bays with what stands between them, and gaps of some widths too, the

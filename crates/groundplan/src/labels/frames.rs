@@ -13,6 +13,8 @@ const NEARER: f64 = 0.8;
 pub const AISLE: f64 = 6.0;
 /// Frames back to back are no further apart, metres.
 pub const BACK: f64 = 0.6;
+/// From leg to leg across what is between them, metres, where another leg of either is hidden: chairs stand farther off.
+const FLUE: f64 = 0.37;
 /// Legs back to back that are seen as one thing are no wider than this together, metres.
 const TWO: f64 = 0.75;
 /// The middle of a leg lies half of a usual one within the end of what it is a part of, metres.
@@ -186,10 +188,11 @@ impl Legs {
         let ends = |leg: [f64; 2]| gap(leg).is_none_or(|(gap, _)| depth <= NEARER * gap);
         match gap(leg) {
             Some((one, far)) if is_frame(one) => ends(far),
-            // Goods may hide the other leg of the frame beyond.
-            Some((one, far)) if one <= BACK => {
-                gap(far).is_none_or(|(two, far)| if is_frame(two) { ends(far) } else { depth <= NEARER * two })
-            }
+            Some((one, far)) if one <= BACK => match gap(far) {
+                Some((two, far)) if is_frame(two) => ends(far),
+                // So near the other leg of that frame is hidden by goods.
+                _ => one <= FLUE && ends(far),
+            },
             _ => ends(leg),
         }
     }

@@ -19,7 +19,7 @@ use std::mem;
 pub const WIDTH: (f64, f64) = (1.6, 8.0);
 /// A section up to this many pitches is an empty bay, by what is seen of it: posts take a little of each.
 pub const BAY: f64 = 1.03;
-/// Where no bays recur, between ends that are closed ways may be narrower by so much, metres.
+/// Where no bays recur, between ends that are closed what may be a way is narrower by so much, metres.
 const CLOSED: f64 = 0.3;
 /// What passes a row's end is at least so many pitches wide, or lies within its last bay.
 const NARROW: f64 = 0.8;
@@ -382,9 +382,9 @@ impl<'a> Columns<'a> {
 
     fn is_way(&self, from: usize, to: usize) -> bool {
         let is_closed = || [from, to].into_iter().all(|n| self.closing(n) == Closing::Whole);
-        let more = if self.pitch.is_none() { CLOSED } else { 0.0 };
-        self.is_free_way(from, to, 0.0) && (is_closed() || self.is_between_posts(from, to))
-            || more > 0.0 && self.is_free_way(from, to, more) && is_closed()
+        let narrower = if self.pitch.is_none() { CLOSED } else { 0.0 };
+        self.is_free_way(from, to, narrower) && is_closed()
+            || self.is_free_way(from, to, 0.0) && self.is_between_posts(from, to)
     }
 
     /// True when nothing stands between two columns and it is no bay that lies there, nor some of them.

@@ -100,7 +100,9 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 /// nor where nothing of the rows beside reaches into it, or those before it end at bars and that one goes on past it. Nor
 /// those beside which, with no rack between, one leads through more rows; nor those that posts part into bays in all their
 /// rows. Bars decide where that leaves it open, and cut what leads on over bays.
-pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]) -> Vec<Strip> {
+/// Those from `first` on are known by the rows that they lead through: narrow ones are ways where these are closed but for
+/// several.
+pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], first: usize) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let mut pieces: Vec<Vec<Strip>> = strips.iter().map(|strip| vec![strip.clone()]).collect();
     let placed = placed(views, strips.iter().map(Strip::place));
@@ -161,9 +163,9 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             let may_lie = || pitch().is_none() || may_be_bay();
             let is_as_bays_lie = || may_lie() && alone.is_as_bays_lie(&place, strips, own, width);
             // Where no bays recur, what each row has as many of is no gap between goods, however wide, nor what lies as none can.
-            let is_without_bays = LazyCell::new(|| {
-                pitch().is_none() && (alone::is_one_of_each(&place, own) || closed::is_way(&place, strips, own, width))
-            });
+            let is_closed = LazyCell::new(|| closed::is_way(&place, strips, own, width));
+            let is_without_bays =
+                LazyCell::new(|| pitch().is_none() && (alone::is_one_of_each(&place, own) || *is_closed));
             let is_way = || is_as_wide() || is_no_bay() || *is_without_bays;
             let lies_as_bays = || is_bay() || is_as_bays_lie() && !*is_without_bays;
             // Where width and place disagree, or neither tells, bars do; and where these are missed it is none.
@@ -176,7 +178,8 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
                     !*is_told_within && view.pitch.is_some() && own.rows.iter().all(is_double) && bars.are_beside(n)
                 }
             };
-            stays[n] &= (!is_some || is_told()) && !bars.are_parted(n);
+            let is_narrow = n >= first && width < WIDTH.0 && !own.is_whole();
+            stays[n] &= (!is_some || is_told()) && (!is_narrow || *is_closed) && !bars.are_parted(n);
             if let Some(cut) = stays[n].then(|| bars.cut(n)).flatten() {
                 pieces[n] = cut;
             }
