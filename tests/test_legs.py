@@ -233,3 +233,26 @@ def test_a_way_as_wide_as_a_bay_between_plates_is_one(is_double: bool) -> None:
 def test_rows_of_tables_are_no_racks_though_their_legs_are_in_step() -> None:
     boxes = (box for n, depth in enumerate((0.7, 1.1)) for box in legs(4.0, 3.0 + 3.0 * n, 5, depth, 1.6))
     assert counts(hall(16.0, 12.0, boxes))["rack"] == 0
+
+
+@pytest.mark.parametrize("degrees", [0.0, 17.0])
+def test_goods_that_hide_frames_leave_a_rack_whole(degrees: float) -> None:
+    def boxes() -> Iterator[Box]:
+        for n, full in enumerate([(1, 7), (2, 6)]):
+            yield from legs(3.0, 2.6 + 3.3 * n, 9, 1.1, 1.6)
+            # Pallets touch the legs beside them.
+            for bay in full:
+                yield 3.1 + 1.6 * bay, 2.6 + 3.3 * n, 4.6 + 1.6 * bay, 3.7 + 3.3 * n
+
+    found = counts(hall(20.5, 9.6, boxes(), degrees))
+    assert found == {"rack": 2, "corridor": 5, "junction": 6, "pillar": 0}
+
+
+def test_what_a_map_shows_twice_is_one_rack() -> None:
+    def boxes() -> Iterator[Box]:
+        for n in range(3):
+            for off in (0.0, 0.25):
+                yield from legs(3.0 + off, 3.0 + 4.1 * n, 7, 1.1, 2.7)
+
+    found = counts(hall(25.0, 15.3, boxes()))
+    assert found == {"rack": 3, "corridor": 6, "junction": 8, "pillar": 0}

@@ -539,3 +539,38 @@ def test_gaps_of_rows_that_are_closed_everywhere_else_are_ways_though_narrower_t
     found = groundplan.survey(picture, resolution=RESOLUTION)
     across = [way["width"] for way in found.of_kind("corridor") if way["name"].startswith("C")]
     assert sorted(across) == pytest.approx([3.0] * sum(map(len, gaps)) * are_ways + [3.8] * 3, abs=0.15)
+
+
+def closed_rows(gaps: list[list[tuple[int, int]]], length: int = 520) -> Picture:
+    """Rows of one rack 1 m deep, each with gaps from where to where, pixels; nobody saw what is inside of them."""
+    end = 60
+    picture = walled(2 * end + length, (len(gaps) + 1) * AISLE + len(gaps) * DEPTH)
+    for n, row in enumerate(gaps):
+        low = 20 + AISLE + n * (AISLE + DEPTH)
+        edges = [0, *itertools.chain(*row), length]
+        for left, right in zip(edges[::2], edges[1::2], strict=True):
+            picture[low : low + DEPTH, 20 + end + left : 20 + end + right] = OCCUPIED
+            picture[low + 2 : low + DEPTH - 2, 20 + end + left + 2 : 20 + end + right - 2] = UNKNOWN
+    return picture
+
+
+@pytest.mark.parametrize(
+    "gaps",
+    [
+        [[(157, 205)], [(331, 397)], [(75, 131), (400, 460)]],
+        [[(100, 144)], [(283, 349)]],
+        [[(64, 93)], [(311, 349)], [(157, 189)], [(391, 429)]],  # two of them are less than 1.6 m wide
+    ],
+)
+def test_staggered_gaps_of_any_widths_in_closed_rows_are_ways(gaps: list[list[tuple[int, int]]]) -> None:
+    survey = groundplan.survey(closed_rows(gaps), resolution=RESOLUTION)
+    ways = sum(map(len, gaps))
+    expected = ["L"] * 4 + ["T"] * 2 * (len(gaps) - 1 + ways)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == expected
+
+
+@pytest.mark.parametrize("bay", [48, 52, 54])
+def test_staggered_gaps_as_wide_as_a_bay_a_whole_number_of_bays_apart_are_empty_bays(bay: int) -> None:
+    gaps = [[(bay * n, bay * (n + 1) - 2) for n in empty] for empty in ((2,), (), (5,), ())]
+    survey = groundplan.survey(closed_rows(gaps, length=9 * bay), resolution=RESOLUTION)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 6
