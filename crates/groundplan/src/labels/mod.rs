@@ -50,6 +50,7 @@ mod panes;
 mod paper;
 mod passing;
 mod past_goods;
+mod past_last;
 mod patches;
 mod patterns;
 mod period;

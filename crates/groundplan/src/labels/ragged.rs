@@ -137,9 +137,12 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
         let is_of_it = |way: &Strip| way.along[0] < candidate.along[1] && candidate.along[0] < way.along[1];
         all.extend(ways.into_iter().filter(|(way, is_cut)| !is_cut && is_of_it(way)).map(|(way, _)| way));
     }
-    let whole = |way: Strip| Strip { across: widened(view, &way, parameters.labels_max_width), ..way };
+    let whole = |way: Strip| {
+        let across = widened(view, &way);
+        (across[1] - across[0] <= parameters.labels_max_width).then_some(Strip { across, ..way })
+    };
     let [sure, over, cut] =
-        [all.split_off(known.len()), over.ways, cut.ways].map(|ways| ways.into_iter().map(whole).collect());
+        [all.split_off(known.len()), over.ways, cut.ways].map(|ways| ways.into_iter().filter_map(whole).collect());
     Ways { sure, over, cut, on: on.ways }
 }
 
@@ -239,25 +242,17 @@ impl Seen {
     }
 }
 
-/// From side to side of a way: with all beside it along which next to nothing stands, no farther than its sides may stand
-/// and no wider than that.
-fn widened(view: &Turned, way: &Strip, widest: f64) -> [f64; 2] {
+/// From side to side of a way: with all beside it along which next to nothing stands, no farther than its sides may stand.
+fn widened(view: &Turned, way: &Strip) -> [f64; 2] {
     let columns = view.column(way.along[0])..view.column(way.along[1]);
     let [below, above] = beyond(way.across);
     let is_clear = |low: f64| view.mean_blocked(columns.clone(), low, low + view.cell) <= REACHED;
     let [mut low, mut high] = way.across;
-    loop {
-        let has_room = |low: f64, high: f64| high - low + view.cell <= widest;
-        let down = has_room(low, high) && low - view.cell >= below[0] && is_clear(low - view.cell);
-        if down {
-            low -= view.cell;
-        }
-        let up = has_room(low, high) && high + view.cell <= above[1] && is_clear(high);
-        if up {
-            high += view.cell;
-        }
-        if !down && !up {
-            return [low, high];
-        }
+    while low - view.cell >= below[0] && is_clear(low - view.cell) {
+        low -= view.cell;
     }
+    while high + view.cell <= above[1] && is_clear(high) {
+        high += view.cell;
+    }
+    [low, high]
 }

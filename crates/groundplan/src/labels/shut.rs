@@ -11,7 +11,7 @@ use std::ops::Range;
 
 /// A corridor goes on beyond a junction when it does so for this long, metres, and where a wall ends it, for this share
 /// of its width: less is what is left of it at a corner.
-const ARM: (f64, f64) = (1.6, 0.65);
+pub const ARM: (f64, f64) = (1.6, 0.65);
 /// What stands within this share of its width of a corridor's sides does not close it.
 const MARGIN: f64 = 0.2;
 /// A corridor's end is looked for so far beyond its walls, metres.

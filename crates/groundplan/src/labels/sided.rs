@@ -71,7 +71,7 @@ fn are_sided_but_for(view: &Turned, strip: &Strip, along: [f64; 2], gap: f64) ->
 }
 
 /// From where to where across what stands at a strip's sides does so.
-fn sides(strip: &Strip) -> [[f64; 2]; 2] {
+pub fn sides(strip: &Strip) -> [[f64; 2]; 2] {
     let [low, high] = strip.across;
     let (within, beyond) = (SIDE.0 * strip.width(), SIDE.1 * strip.width());
     [[low - beyond, low + within], [high - within, high + beyond]]

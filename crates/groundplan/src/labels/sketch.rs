@@ -22,6 +22,7 @@ use super::meeting::Meeting;
 use super::narrowed;
 use super::panes;
 use super::past_goods;
+use super::past_last;
 use super::pillared;
 use super::quarter;
 use super::racks;
@@ -255,6 +256,10 @@ impl Plan {
         let narrow = narrowed::past(views, &plan.strips, &plan.racks, &plan.reached(views), least);
         if narrow != plan.strips {
             plan = Self::new(views, narrow, threads);
+            plan.racks = plan.find_racks(views, on_legs, &standing, threads);
+        }
+        if let Some(longer) = past_last::led_on(views, &plan.strips, &plan.meetings) {
+            plan = Self::new(views, longer, threads);
             plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }
         plan.racks = whole::uncrossed(views, &plan.strips, &plan.extents, &plan.racks);

@@ -35,17 +35,23 @@ pub fn fill(raster: &Raster, regions: &Runs, pixels: &[usize]) -> Vec<(usize, u3
 
 /// Gives runs that have no number, 0 for now, to the regions beside them.
 pub fn fill_runs(raster: &Raster, mut regions: Runs) -> Runs {
-    // What hangs together without a number is of the one region that it touches, or walked through.
-    let mut sets = Sets::new(regions.all.len());
+    // What hangs together without a number is of the one region that it touches, or walked through. Few runs have none.
+    let loose: Vec<u32> = (0..).zip(&regions.all).filter(|(_, run)| run.number == 0).map(|(n, _)| n).collect();
+    let index = |run: usize| loose.binary_search(&(run as u32)).ok();
+    let mut sets = Sets::new(loose.len());
     regions.beside(|one, other| {
-        if regions.all[one].number == 0 && regions.all[other].number == 0 {
+        if regions.all[one].number == 0
+            && regions.all[other].number == 0
+            && let (Some(one), Some(other)) = (index(one), index(other))
+        {
             sets.join_first(one as u32, other as u32);
         }
     });
     let (sets, count) = sets.numbered();
     let mut touched = vec![Touched::None; count + 1];
     let mut touch = |run: usize, by: u32| {
-        let set = &mut touched[sets[run] as usize];
+        let Some(index) = index(run) else { return };
+        let set = &mut touched[sets[index] as usize];
         *set = match *set {
             Touched::None => Touched::One(by),
             Touched::One(number) if number == by => Touched::One(number),
@@ -62,7 +68,8 @@ pub fn fill_runs(raster: &Raster, mut regions: Runs) -> Runs {
         }
     });
     let mut todo = Vec::new();
-    for (run, &set) in regions.all.iter_mut().zip(&sets).filter(|(run, _)| run.number == 0) {
+    for (&run, &set) in loose.iter().zip(&sets) {
+        let run = &mut regions.all[run as usize];
         match touched[set as usize] {
             Touched::None => {}
             Touched::One(number) => run.number = number,

@@ -148,7 +148,7 @@ pub fn find(
         })
         .collect();
     numbers.all.iter_mut().zip(&pieces).for_each(|(run, &piece)| run.number = names[piece as usize]);
-    drop(pieces);
+    drop((pieces, looks));
     let numbers = fill_runs(raster, numbers);
     let mut regions: Vec<Region> = (1..=count)
         .map(|number| Region { number, pixels: 0, at: 0, distances: 0.0, measured: 0, place: [0.0; 2] })

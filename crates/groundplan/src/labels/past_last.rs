@@ -1,0 +1,90 @@
+//! Ways past the ends of a place's last row: they lead on beyond the aisle along it, into what is open behind that row and no
+//! corridor.
+
+use super::barriers;
+use super::beside::{Beside, placed};
+use super::corridors::{ASKEW, Strip};
+use super::meeting::{Meeting, of_each};
+use super::rows::{DEPTH, SAME};
+use super::shut::{ARM, sign};
+use super::turned::Turned;
+use super::{junctions, sided};
+use crate::ends::{around, holds, overlap, sorted};
+
+/// Behind the row it is open where floor goes on for so long, metres, but for this share.
+const OPEN: f64 = 2.0;
+const CLUTTER: f64 = 0.05;
+
+/// The strips, each with what it leads on between the ends of racks, or of one and a wall, that stand along the last aisle that
+/// it meets; nothing where none does.
+pub fn led_on(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Option<Vec<Strip>> {
+    let met = of_each(meetings, strips.len());
+    let placed = placed(views, strips.iter().map(Strip::place));
+    let mut longer = strips.to_vec();
+    for (n, strip) in strips.iter().enumerate() {
+        let view = &views[strip.direction];
+        for side in [0, 1] {
+            let sign = sign(side);
+            let here = || met[n].iter().map(|&m| &meetings[m]);
+            if !junctions::is_met(view, strip, n, side, here()) {
+                continue;
+            }
+            let far = here().flat_map(|meeting| far_sides(views, strips, meeting, n, side));
+            let Some(from) = far.max_by(|a, b| (a * sign).total_cmp(&(b * sign))) else { continue };
+            let Some(end) = row_end(view, strip, side, from) else { continue };
+            let on = sorted([from + sign * SAME, end + sign * OPEN]);
+            if is_open(view, strip, on) && !is_crossed(views, strip, on, strips, &placed) {
+                // A junction's arm is no shorter.
+                let arm = from + sign * (ARM.0 + view.cell);
+                longer[n].along[side] = if side == 0 { end.min(arm) } else { end.max(arm) };
+            }
+        }
+    }
+    (longer != strips).then_some(longer)
+}
+
+/// Where the corridors that a strip meets at a junction have their farther sides, along it.
+fn far_sides(views: &[Turned], strips: &[Strip], meeting: &Meeting, n: usize, side: usize) -> Vec<f64> {
+    let view = &views[strips[n].direction];
+    let sine = |m: usize| view.sine(&views[strips[m].direction]);
+    let others = meeting.corridors.iter().filter(|&&m| sine(m) > ASKEW);
+    let at = view.place(meeting.at)[0];
+    others.map(|&m| at + sign(side) * strips[m].width() / 2.0 / sine(m)).collect()
+}
+
+/// How far along a strip what stands at both its sides from a place on does so, where that is as deep as rows are.
+fn row_end(view: &Turned, strip: &Strip, side: usize, from: f64) -> Option<f64> {
+    let sign = sign(side);
+    let columns = view.columns(sorted([from - sign * SAME, from + sign * DEPTH.1]));
+    let ends = sided::sides(strip).map(|[low, high]| {
+        let stands = view.some_occupied(columns.clone(), low, high);
+        let mut places = columns.clone().zip(stands).filter(|(_, share)| *share > 0.0).map(|(column, _)| column);
+        let first = places.next()?;
+        let last = places.last()?;
+        let [near, far] = if side == 0 { [last, first] } else { [first, last] };
+        let [near, far] = [near, far].map(|column| sign * (view.along(column) + view.cell / 2.0 - from));
+        (near.abs() <= SAME + view.cell && far - near >= DEPTH.0).then_some(far)
+    });
+    let [Some(one), Some(two)] = ends else { return None };
+    Some(from + sign * one.min(two))
+}
+
+/// True when nothing bars a strip between two places.
+fn is_open(view: &Turned, strip: &Strip, along: [f64; 2]) -> bool {
+    let columns = view.columns(along);
+    let [low, high] = strip.across;
+    view.mean_blocked(columns.clone(), low, high) <= CLUTTER
+        && !barriers::among(view, strip.across, columns.clone()).any()
+        && barriers::stops(view, strip.across, columns).is_empty()
+}
+
+/// True when another strip runs across a strip's middle between two places along it.
+fn is_crossed(views: &[Turned], strip: &Strip, along: [f64; 2], strips: &[Strip], placed: &[Beside]) -> bool {
+    let own = &views[strip.direction];
+    let ends = along.map(|u| own.to_map([u, strip.middle()]));
+    views.iter().filter(|its| own.sine(its) > ASKEW).any(|its| {
+        let [u, v] = [0, 1].map(|axis| around(ends.iter().map(|&end| its.place(end)[axis])));
+        let near = placed[its.direction].touching(u, v);
+        near.into_iter().map(|n| &strips[n]).any(|other| overlap(other.along, u) >= 0.0 && holds(v, other.middle()))
+    })
+}
