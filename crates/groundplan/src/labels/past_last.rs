@@ -5,19 +5,27 @@ use super::barriers;
 use super::beside::{Beside, placed};
 use super::corridors::{ASKEW, Strip};
 use super::meeting::{Meeting, of_each};
-use super::rows::{DEPTH, SAME};
+use super::rows::{DEPTH, Row, SAME};
 use super::shut::{ARM, sign};
 use super::turned::Turned;
 use super::{junctions, sided};
-use crate::ends::{around, holds, overlap, sorted};
+use crate::ends::{around, holds, overlap, sorted, wider};
 
 /// Behind the row it is open where floor goes on for so long, metres, but for this share.
 const OPEN: f64 = 2.0;
 const CLUTTER: f64 = 0.05;
 
 /// The strips, each with what it leads on between the ends of racks, or of one and a wall, that stand along the last aisle that
-/// it meets; nothing where none does.
-pub fn led_on(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Option<Vec<Strip>> {
+/// it meets, where some are known beside that; nothing where none does.
+pub fn led_on(
+    views: &[Turned],
+    strips: &[Strip],
+    meetings: &[Meeting],
+    [rows, racks]: [&[Row]; 2],
+) -> Option<Vec<Strip>> {
+    let standing = placed(views, rows.iter().chain(racks).map(Row::place));
+    let is_aisle =
+        |strip: &Strip| !standing[strip.direction].touching(strip.along, wider(strip.across, SAME)).is_empty();
     let met = of_each(meetings, strips.len());
     let placed = placed(views, strips.iter().map(Strip::place));
     let mut longer = strips.to_vec();
@@ -30,26 +38,27 @@ pub fn led_on(views: &[Turned], strips: &[Strip], meetings: &[Meeting]) -> Optio
                 continue;
             }
             let far = here().flat_map(|meeting| far_sides(views, strips, meeting, n, side));
-            let Some(from) = far.max_by(|a, b| (a * sign).total_cmp(&(b * sign))) else { continue };
+            let last = far.max_by(|(_, a), (_, b)| (a * sign).total_cmp(&(b * sign)));
+            let Some((_, from)) = last.filter(|(m, _)| is_aisle(&strips[*m])) else { continue };
             let Some(end) = row_end(view, strip, side, from) else { continue };
             let on = sorted([from + sign * SAME, end + sign * OPEN]);
             if is_open(view, strip, on) && !is_crossed(views, strip, on, strips, &placed) {
                 // A junction's arm is no shorter.
-                let arm = from + sign * (ARM.0 + view.cell);
-                longer[n].along[side] = if side == 0 { end.min(arm) } else { end.max(arm) };
+                let reached = [strip.along[side], from + sign * (ARM.0 + view.cell), end];
+                longer[n].along[side] = around(reached.into_iter())[side];
             }
         }
     }
     (longer != strips).then_some(longer)
 }
 
-/// Where the corridors that a strip meets at a junction have their farther sides, along it.
-fn far_sides(views: &[Turned], strips: &[Strip], meeting: &Meeting, n: usize, side: usize) -> Vec<f64> {
+/// The corridors that a strip meets at a junction, and where each has its farther side, along the strip.
+fn far_sides(views: &[Turned], strips: &[Strip], meeting: &Meeting, n: usize, side: usize) -> Vec<(usize, f64)> {
     let view = &views[strips[n].direction];
     let sine = |m: usize| view.sine(&views[strips[m].direction]);
     let others = meeting.corridors.iter().filter(|&&m| sine(m) > ASKEW);
     let at = view.place(meeting.at)[0];
-    others.map(|&m| at + sign(side) * strips[m].width() / 2.0 / sine(m)).collect()
+    others.map(|&m| (m, at + sign(side) * strips[m].width() / 2.0 / sine(m))).collect()
 }
 
 /// How far along a strip what stands at both its sides from a place on does so, where that is as deep as rows are.

@@ -258,7 +258,7 @@ impl Plan {
             plan = Self::new(views, narrow, threads);
             plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }
-        if let Some(longer) = past_last::led_on(views, &plan.strips, &plan.meetings) {
+        if let Some(longer) = past_last::led_on(views, &plan.strips, &plan.meetings, [&plan.rows, &plan.racks]) {
             plan = Self::new(views, longer, threads);
             plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }
