@@ -176,7 +176,7 @@ parameters! {
         "How many directions to take, strongest first; found by itself when not set.";
     directions_angles_deg: Option<Vec<f64>> = None, "directions.angles_deg", "deg", Range::Numbers(-360.0, 360.0), true, "II-A",
         "The directions themselves, in the map frame; found by themselves when not set.";
-    directions_separation_deg: f64 = 8.0, "directions.separation_deg", "deg", Range::Number(0.5, 45.0), false, "II-A",
+    directions_separation_deg: f64 = 5.0, "directions.separation_deg", "deg", Range::Number(0.5, 45.0), false, "II-A",
         "Two directions that are found closer than this are one; those that are given stay.";
     directions_min_weight: f64 = 0.15, "directions.min_weight", "", Range::Number(0.0, 1.0), false, "II-A",
         "A direction counts when the structure that lines up along it is at least this share of the strongest's; a weaker one only where another has none square to it, or two are a small wing's.";
