@@ -19,7 +19,7 @@ SETTINGS: dict[str, Any] = {
     "lines.snr": 4.5,
     "lines.detail": 0.25,
     "directions.angles_deg": [0.0, 90.0],
-    "directions.separation_deg": 5.0,
+    "directions.separation_deg": 6.0,
     "labels.method": "paper",
 }
 
@@ -45,7 +45,7 @@ def test_keywords_flags_and_file_agree(tmp_path: Path, capsys: Capture) -> None:
     flags = [f"{name}={str(value).strip('[]').replace(' ', '')}" for name, value in SETTINGS.items()]
     assert in_force(capsys, *(word for flag in flags for word in ("--set", flag))) == expected
     (tmp_path / "settings.toml").write_text(
-        "[lines]\nsnr = 4.5\ndetail = 'coarse'\n[directions]\nangles_deg = [0, 90]\nseparation_deg = 5\n"
+        "[lines]\nsnr = 4.5\ndetail = 'coarse'\n[directions]\nangles_deg = [0, 90]\nseparation_deg = 6\n"
         "[labels]\nmethod = 'paper'\n"
     )
     assert in_force(capsys, "--config", "settings.toml") == expected
@@ -54,7 +54,7 @@ def test_keywords_flags_and_file_agree(tmp_path: Path, capsys: Capture) -> None:
     )
     assert in_force(capsys, "--config", "dotted.toml") == expected
     own_flags = ["--direction", "0", "90", "--detail", "coarse"]
-    settings = ["lines_snr=4.5", "labels.method=paper", "directions.separation_deg=5"]
+    settings = ["lines_snr=4.5", "labels.method=paper", "directions.separation_deg=6"]
     assert in_force(capsys, *own_flags, *(word for one in settings for word in ("--set", one))) == expected
 
 

@@ -14,6 +14,9 @@ use crate::ends::{around, holds, overlap, sorted, wider};
 /// Behind the row it is open where floor goes on for so long, metres, but for this share.
 const OPEN: f64 = 2.0;
 const CLUTTER: f64 = 0.05;
+/// And so far beside the strip as well, metres, but for this share.
+const BESIDE: f64 = 1.0;
+const TAKEN: f64 = 0.3;
 
 /// The strips, each with what it leads on between the ends of racks, or of one and a wall, that stand along the last aisle that
 /// it meets, where some are known beside that; nothing where none does.
@@ -41,8 +44,11 @@ pub fn led_on(
             let last = far.max_by(|(_, a), (_, b)| (a * sign).total_cmp(&(b * sign)));
             let Some((_, from)) = last.filter(|(m, _)| is_aisle(&strips[*m])) else { continue };
             let Some(end) = row_end(view, strip, side, from) else { continue };
-            let on = sorted([from + sign * SAME, end + sign * OPEN]);
-            if is_open(view, strip, on) && !is_crossed(views, strip, on, strips, &placed) {
+            let [behind, beyond] = [end + sign * SAME, end + sign * OPEN];
+            if is_open(view, strip, sorted([from - sign * SAME, beyond]))
+                && is_before_floor(view, strip, sorted([behind, beyond]))
+                && !is_crossed(views, strip, sorted([from + sign * SAME, beyond]), strips, &placed)
+            {
                 // A junction's arm is no shorter.
                 let reached = [strip.along[side], from + sign * (ARM.0 + view.cell), end];
                 longer[n].along[side] = around(reached.into_iter())[side];
@@ -85,6 +91,15 @@ fn is_open(view: &Turned, strip: &Strip, along: [f64; 2]) -> bool {
     view.mean_blocked(columns.clone(), low, high) <= CLUTTER
         && !barriers::among(view, strip.across, columns.clone()).any()
         && barriers::stops(view, strip.across, columns).is_empty()
+}
+
+/// True when floor shows between two places along a strip on one of its sides too, as behind a row and not behind a gate.
+fn is_before_floor(view: &Turned, strip: &Strip, along: [f64; 2]) -> bool {
+    let [low, high] = strip.across;
+    let columns = view.columns(along);
+    [[low - BESIDE, low], [high, high + BESIDE]]
+        .into_iter()
+        .any(|[low, high]| view.mean_blocked(columns.clone(), low, high) <= TAKEN)
 }
 
 /// True when another strip runs across a strip's middle between two places along it.
