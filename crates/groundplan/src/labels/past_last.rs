@@ -44,11 +44,11 @@ pub fn led_on(
             let last = far.max_by(|(_, a), (_, b)| (a * sign).total_cmp(&(b * sign)));
             let Some((_, from)) = last.filter(|(m, _)| is_aisle(&strips[*m])) else { continue };
             let Some(end) = row_end(view, strip, side, from) else { continue };
-            let [behind, beyond] = [end + sign * SAME, end + sign * OPEN];
-            if is_open(view, strip, sorted([from - sign * SAME, beyond]))
+            let [behind, beyond, past] = [end + sign * SAME, end + sign * OPEN, from + sign * (DEPTH.1 + OPEN)];
+            let leads_on = is_open(view, strip, sorted([from - sign * SAME, beyond]))
                 && is_before_floor(view, strip, sorted([behind, beyond]))
-                && !is_crossed(views, strip, sorted([from + sign * SAME, beyond]), strips, &placed)
-            {
+                && !is_crossed(views, strip, sorted([from + sign * SAME, past]), strips, &placed);
+            if leads_on {
                 // A junction's arm is no shorter.
                 let reached = [strip.along[side], from + sign * (ARM.0 + view.cell), end];
                 longer[n].along[side] = around(reached.into_iter())[side];
@@ -87,7 +87,8 @@ fn row_end(view: &Turned, strip: &Strip, side: usize, from: f64) -> Option<f64> 
 /// True when nothing bars a strip between two places.
 fn is_open(view: &Turned, strip: &Strip, along: [f64; 2]) -> bool {
     let columns = view.columns(along);
-    let [low, high] = strip.across;
+    // Its sides may lie within what stands there.
+    let [low, high] = wider(strip.across, -SAME.min(strip.width() / 4.0));
     view.mean_blocked(columns.clone(), low, high) <= CLUTTER
         && !barriers::among(view, strip.across, columns.clone()).any()
         && barriers::stops(view, strip.across, columns).is_empty()

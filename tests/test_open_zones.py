@@ -1,0 +1,76 @@
+"""Where racks stand before an open zone, ways lead past the last row into it, and it is no corridor."""
+
+from __future__ import annotations
+
+import pytest
+from zoo import FREE, OCCUPIED, UNKNOWN, Canvas
+
+import groundplan
+
+RESOLUTION = 0.05
+#: Metres: aisles and ways across, rows from face to face, racks from end to end, and around the hall.
+AISLE, DEPTH, LENGTH, AROUND = 3.0, 1.0, 12.0, 1.0
+
+
+def hall(rows: int, zone: float, degrees: float = 0.0, closed: bool = True, wall: bool = False) -> groundplan.Survey:
+    """Rows of two racks with a way across between them, aisles below and between, and so much floor above.
+
+    The racks are closed and their insides unknown, or each has four legs and plates at its ends. With a wall that runs
+    along the last row's back there is no floor beyond.
+    """
+    width, height = 3 * AISLE + 2 * LENGTH, rows * (AISLE + DEPTH) + zone
+    size = width + height
+    canvas = Canvas(round(size / RESOLUTION), round(size / RESOLUTION)).turn(degrees)
+    left, low = (size - width) / 2, (size - height) / 2
+
+    def box(x0: float, y0: float, x1: float, y1: float, value: int = OCCUPIED) -> None:
+        canvas.box(
+            (left + x0) / RESOLUTION, (low + y0) / RESOLUTION, (left + x1) / RESOLUTION, (low + y1) / RESOLUTION, value
+        )
+
+    box(-0.2, -0.2, width + 0.2, height + 0.2)
+    box(0, 0, width, height, FREE)
+    for row in range(rows):
+        y = AISLE + row * (AISLE + DEPTH)
+        for x in (AISLE, 2 * AISLE + LENGTH):
+            box(x, y, x + LENGTH, y + DEPTH)
+            if closed:
+                box(x + 0.1, y + 0.1, x + LENGTH - 0.1, y + DEPTH - 0.1, UNKNOWN)
+            else:
+                box(x + 0.1, y, x + LENGTH - 0.1, y + DEPTH, FREE)
+                for leg in range(1, 4):
+                    for face in (y, y + DEPTH - 0.1):
+                        box(x + 3 * leg - 0.05, face, x + 3 * leg + 0.05, face + 0.1)
+    if wall:
+        back = rows * (AISLE + DEPTH)
+        box(0, back, width, back + 0.2)
+        box(0, back + 0.2, width, height, UNKNOWN)
+    return groundplan.survey(canvas.picture, resolution=RESOLUTION)
+
+
+def kinds(survey: groundplan.Survey) -> list[str]:
+    return sorted(junction["type"] for junction in survey.of_kind("junction"))
+
+
+@pytest.mark.parametrize("degrees", [0.0, 17.0])
+@pytest.mark.parametrize("closed", [True, False])
+@pytest.mark.parametrize(("rows", "zone"), [(3, 9.5), (2, 14.0), (4, 20.0)])
+def test_ways_lead_past_the_last_row_into_the_open(rows: int, zone: float, closed: bool, degrees: float) -> None:
+    survey = hall(rows, zone, degrees, closed)
+    # Two corners below, where the way across ends too; all else are ways on.
+    assert kinds(survey) == sorted(["L", "L", "T"] + ["T", "X", "T"] * (rows - 1))
+    corridors = survey.of_kind("corridor")
+    assert len(corridors) == rows + 3
+    assert all(corridor["width"] == pytest.approx(AISLE, abs=0.25) for corridor in corridors)
+
+
+@pytest.mark.parametrize("rows", [2, 3])
+def test_ways_end_at_the_last_aisle_where_a_wall_runs_behind_its_racks(rows: int) -> None:
+    survey = hall(rows, 9.5, wall=True)
+    assert kinds(survey) == sorted(["L", "T", "L"] * 2 + ["T", "X", "T"] * (rows - 2))
+
+
+@pytest.mark.parametrize("zone", [9.0, 11.0, 14.0])
+def test_what_is_wider_than_corridors_may_be_is_none(zone: float) -> None:
+    survey = hall(3, zone)
+    assert all(corridor["width"] < AISLE + 0.5 for corridor in survey.of_kind("corridor"))
