@@ -11,7 +11,7 @@ use super::ragged::{self, Ways};
 use super::turned::Turned;
 use super::{Evidence, mouths, panes};
 use crate::bands::map_each;
-use crate::ends::{holds, shared};
+use crate::ends::{around, holds, shared};
 use crate::sparing::is_large;
 
 /// A strip of free space along one direction, in the direction's own places (metres along and across).
@@ -90,6 +90,11 @@ pub const ALIKE: f64 = 0.2;
 /// Strips whose directions differ by an angle of a smaller sine run nearly the same way.
 pub const ASKEW: f64 = 0.5;
 
+/// Those whose directions have an angle of a smaller sine are one way where a map is bent, and they are looked for at so many
+/// places.
+const BENT: f64 = 0.18;
+const LOOKS: usize = 16;
+
 /// True when what is so long and so wide, metres, is too short to be a way by itself.
 pub fn is_short(length: f64, width: f64) -> bool {
     length < ALONE.1.max(ALONE.0 * width)
@@ -166,6 +171,34 @@ fn is_askew_in(views: &[Turned], one: &Strip, others: &[Strip], placed: &[Beside
         let holds = |other: &Strip| holds(other.along, u) && holds(other.across, v);
         placed[its.direction].touching([u; 2], [v; 2]).into_iter().any(|n| holds(&others[n]))
     })
+}
+
+/// The strips without those that lie for the most part within a longer one that runs nearly the same way: of what is bent each
+/// direction finds its own piece.
+pub fn without_bent(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
+    let is_near = |one: &Turned, two: &Turned| one.direction != two.direction && one.sine(two) < BENT;
+    if !views.iter().any(|one| views.iter().any(|two| is_near(one, two))) {
+        return strips;
+    }
+    let placed = placed(views, strips.iter().map(Strip::place));
+    let is_within = |strip: &Strip| {
+        let own = &views[strip.direction];
+        let share = |n: usize| strip.along[0] + strip.length() * (n as f64 + 0.5) / LOOKS as f64;
+        let looks: Vec<[f64; 2]> = (0..LOOKS).map(|n| own.to_map([share(n), strip.middle()])).collect();
+        views.iter().filter(|its| is_near(own, its)).any(|its| {
+            let looks: Vec<[f64; 2]> = looks.iter().map(|&look| its.place(look)).collect();
+            let [u, v] = [0, 1].map(|axis| around(looks.iter().map(|look| look[axis])));
+            let near = placed[its.direction].touching(u, v).into_iter().map(|n| &strips[n]);
+            near.filter(|other| other.length() > strip.length()).any(|other| {
+                let within = looks.iter().filter(|[u, v]| holds(other.along, *u) && holds(other.across, *v));
+                2 * within.count() > LOOKS
+            })
+        })
+    };
+    let within: Vec<bool> = strips.iter().map(is_within).collect();
+    let mut within = within.into_iter();
+    strips.retain(|_| !within.next().unwrap_or(false));
+    strips
 }
 
 /// Between the lines of posts of the rows that cross a direction, metres.

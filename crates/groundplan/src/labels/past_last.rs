@@ -6,14 +6,20 @@ use super::beside::{Beside, placed};
 use super::corridors::{ASKEW, Strip};
 use super::meeting::{Meeting, of_each};
 use super::rows::{DEPTH, Row, SAME};
+use super::runs::runs;
 use super::shut::{ARM, sign};
 use super::turned::Turned;
 use super::{junctions, sided};
-use crate::ends::{around, holds, overlap, sorted, wider};
+use crate::ends::{around, holds, overlap, shared, sorted, wider};
 
 /// Behind the row it is open where floor goes on for so long, metres, but for this share.
-const OPEN: f64 = 2.0;
+const OPEN: f64 = 4.0;
 const CLUTTER: f64 = 0.05;
+/// A row has an end, or a gap so wide between goods; its back lies so near to where it is seen to end, metres.
+const GAP: f64 = 1.0;
+const BACK: f64 = 0.2;
+/// No corridor runs behind it so far beyond where the deepest row ends, metres.
+const BEHIND: f64 = 2.0;
 /// And so far beside the strip as well, metres, but for this share.
 const BESIDE: f64 = 1.0;
 const TAKEN: f64 = 0.3;
@@ -26,11 +32,19 @@ pub fn led_on(
     meetings: &[Meeting],
     [rows, racks]: [&[Row]; 2],
 ) -> Option<Vec<Strip>> {
-    let standing = placed(views, rows.iter().chain(racks).map(Row::place));
-    let is_aisle =
-        |strip: &Strip| !standing[strip.direction].touching(strip.along, wider(strip.across, SAME)).is_empty();
+    if racks.is_empty() {
+        return None;
+    }
+    let standing: Vec<&Row> = rows.iter().chain(racks).collect();
+    let stands = placed(views, standing.iter().map(|row| row.place()));
+    let is_aisle = |strip: &Strip| {
+        let near = stands[strip.direction].touching(strip.along, wider(strip.across, SAME));
+        let is_beside =
+            |row: &&Row| overlap(row.along, strip.along) > 0.0 && overlap(row.across, wider(strip.across, SAME)) > 0.0;
+        near.into_iter().map(|n| standing[n]).any(|row| is_beside(&row))
+    };
     let met = of_each(meetings, strips.len());
-    let placed = placed(views, strips.iter().map(Strip::place));
+    let ways = placed(views, strips.iter().map(Strip::place));
     let mut longer = strips.to_vec();
     for (n, strip) in strips.iter().enumerate() {
         let view = &views[strip.direction];
@@ -41,13 +55,17 @@ pub fn led_on(
                 continue;
             }
             let far = here().flat_map(|meeting| far_sides(views, strips, meeting, n, side));
-            let last = far.max_by(|(_, a), (_, b)| (a * sign).total_cmp(&(b * sign)));
-            let Some((_, from)) = last.filter(|(m, _)| is_aisle(&strips[*m])) else { continue };
+            let farthest = far.max_by(|(_, a), (_, b)| (a * sign).total_cmp(&(b * sign)));
+            // Where the row begins, and where it ends.
+            let Some((aisle, from)) = farthest.filter(|(m, _)| is_aisle(&strips[*m])) else { continue };
             let Some(end) = row_end(view, strip, side, from) else { continue };
-            let [behind, beyond, past] = [end + sign * SAME, end + sign * OPEN, from + sign * (DEPTH.1 + OPEN)];
-            let leads_on = is_open(view, strip, sorted([from - sign * SAME, beyond]))
-                && is_before_floor(view, strip, sorted([behind, beyond]))
-                && !is_crossed(views, strip, sorted([from + sign * SAME, past]), strips, &placed);
+            let [behind, beyond, past] = [end + sign * SAME, end + sign * OPEN, from + sign * (DEPTH.1 + BEHIND)];
+            let on_map = [view.start[0], view.start[0] + view.size[0] as f64 * view.cell];
+            // Nothing is known beyond the map.
+            let leads_on = holds(on_map, beyond)
+                && is_open(view, strip, sorted([from - sign * SAME, beyond]))
+                && is_row(view, strip, reached_by(views, strip, &strips[aisle]), end, [behind, beyond])
+                && !is_crossed(views, strip, sorted([from + sign * SAME, past]), strips, &ways);
             if leads_on {
                 // A junction's arm is no shorter.
                 let reached = [strip.along[side], from + sign * (ARM.0 + view.cell), end];
@@ -94,13 +112,34 @@ fn is_open(view: &Turned, strip: &Strip, along: [f64; 2]) -> bool {
         && barriers::stops(view, strip.across, columns).is_empty()
 }
 
-/// True when floor shows between two places along a strip on one of its sides too, as behind a row and not behind a gate.
-fn is_before_floor(view: &Turned, strip: &Strip, along: [f64; 2]) -> bool {
+/// From where to where across a strip an aisle leads that it meets, with what lies about its ends.
+fn reached_by(views: &[Turned], strip: &Strip, aisle: &Strip) -> [f64; 2] {
+    let ends = aisle.along.map(|u| views[aisle.direction].to_map([u, aisle.middle()]));
+    wider(sorted(ends.map(|end| views[strip.direction].place(end)[1])), aisle.width())
+}
+
+/// True when what stands along an aisle at a strip's sides up to a place is a row before floor, and no wall with a gate in it:
+/// floor shows behind one of the sides, and where it does behind both, the row has an end or a gap.
+fn is_row(view: &Turned, strip: &Strip, aisle: [f64; 2], end: f64, [behind, beyond]: [f64; 2]) -> bool {
     let [low, high] = strip.across;
-    let columns = view.columns(along);
-    [[low - BESIDE, low], [high, high + BESIDE]]
-        .into_iter()
-        .any(|[low, high]| view.mean_blocked(columns.clone(), low, high) <= TAKEN)
+    let columns = view.columns(sorted([behind, beyond]));
+    let is_floor = |[low, high]: [f64; 2]| view.mean_blocked(columns.clone(), low, high) <= TAKEN;
+    match [[low - BESIDE, low], [high, high + BESIDE]].map(is_floor) {
+        [false, false] => false,
+        [true, true] => {
+            let back = view.columns(wider([end; 2], BACK));
+            let [first, last] = shared(aisle, [view.start[1], view.start[1] + view.size[1] as f64 * view.cell]);
+            let is_free = |n: usize| {
+                let row = first + n as f64 * view.cell;
+                // Of the strip itself it is known.
+                (row + view.cell < low || row > high)
+                    && view.mean_blocked(back.clone(), row, row + view.cell) <= CLUTTER
+            };
+            let free: Vec<bool> = (0..((last - first) / view.cell) as usize).map(is_free).collect();
+            runs(&free, true).iter().any(|(from, to)| (to - from) as f64 * view.cell >= GAP)
+        }
+        _ => true,
+    }
 }
 
 /// True when another strip runs across a strip's middle between two places along it.

@@ -224,6 +224,7 @@ impl Plan {
         let is_on =
             |way: &Strip| beyond[way.direction].touching(way.along, way.across).into_iter().any(|n| on[n] == *way);
         found.retain(|way| !is_on(way));
+        let found = corridors::without_bent(views, found);
         let found = rows::without_lanes(views, crossed::without_bays(evidence, look, views, found));
         let found = pillared::widened(views, &slots::without(views, found), evidence.parameters);
         let found = past_goods::led_on(views, found, least);
