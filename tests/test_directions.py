@@ -177,6 +177,13 @@ def test_a_wing_that_is_small_beside_the_hall_has_its_two_directions(turn: float
     assert len(angles_of(site(12))) == 2
 
 
+@pytest.mark.parametrize("turn", [5.5, -6.0, 7.0])
+def test_a_wing_turned_by_a_few_degrees_has_directions_of_its_own(turn: float) -> None:
+    found = groundplan.survey(simulate.warehouse(wing=turn, seed=3).map).directions.angles
+    assert len(found) == 4
+    assert (apart(np.radians([0, 90, turn, turn + 90]), found).min(axis=1) < np.radians(0.25)).all(), np.degrees(found)
+
+
 @pytest.mark.parametrize(("skew", "seed"), [(10.0, 106), (-14.0, 14)])
 def test_a_skewed_hall_has_no_third_direction_by_goods_that_are_square_to_its_racks(skew: float, seed: int) -> None:
     made = simulate.warehouse(skew=skew, seed=seed, width=44.0, depth=32.0, yaw=6.2)

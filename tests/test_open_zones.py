@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 import pytest
-from zoo import FREE, OCCUPIED, UNKNOWN, Canvas
+from zoo import FREE, OCCUPIED, UNKNOWN, Canvas, Picture
 
 import groundplan
 
 RESOLUTION = 0.05
-#: Metres: aisles and ways across, rows from face to face, racks from end to end, and around the hall.
-AISLE, DEPTH, LENGTH, AROUND = 3.0, 1.0, 12.0, 1.0
+#: Metres: aisles and ways across, rows from face to face, racks from end to end.
+AISLE, DEPTH, LENGTH = 3.0, 1.0, 12.0
 
 
-def hall(rows: int, zone: float, degrees: float = 0.0, closed: bool = True, wall: bool = False) -> groundplan.Survey:
+def drawn(
+    rows: int, zone: float, degrees: float = 0.0, closed: bool = True, wall: bool = False, gate: bool = False
+) -> Picture:
     """Rows of two racks with a way across between them, aisles below and between, and so much floor above.
 
-    The racks are closed and their insides unknown, or each has four legs and plates at its ends. With a wall that runs
-    along the last row's back there is no floor beyond.
+    The racks are closed and their insides unknown, or each has legs between plates at its ends. Along the last row's
+    back may run a wall, with a gate of 2 m in line with the way across or with nothing seen beyond.
     """
     width, height = 3 * AISLE + 2 * LENGTH, rows * (AISLE + DEPTH) + zone
-    size = width + height
-    canvas = Canvas(round(size / RESOLUTION), round(size / RESOLUTION)).turn(degrees)
-    left, low = (size - width) / 2, (size - height) / 2
+    around = 15.0 if degrees else 0.2
+    canvas = Canvas(round((width + 2 * around) / RESOLUTION), round((height + 2 * around) / RESOLUTION)).turn(degrees)
+    left = low = around
 
     def box(x0: float, y0: float, x1: float, y1: float, value: int = OCCUPIED) -> None:
         canvas.box(
@@ -44,8 +46,15 @@ def hall(rows: int, zone: float, degrees: float = 0.0, closed: bool = True, wall
     if wall:
         back = rows * (AISLE + DEPTH)
         box(0, back, width, back + 0.2)
-        box(0, back + 0.2, width, height, UNKNOWN)
-    return groundplan.survey(canvas.picture, resolution=RESOLUTION)
+        if gate:
+            box(AISLE + LENGTH + 0.5, back, 2 * AISLE + LENGTH - 0.5, back + 0.2, FREE)
+        else:
+            box(0, back + 0.2, width, height, UNKNOWN)
+    return canvas.picture
+
+
+def hall(rows: int, zone: float, degrees: float = 0.0, **others: bool) -> groundplan.Survey:
+    return groundplan.survey(drawn(rows, zone, degrees, **others), resolution=RESOLUTION)
 
 
 def kinds(survey: groundplan.Survey) -> list[str]:
@@ -56,7 +65,7 @@ def kinds(survey: groundplan.Survey) -> list[str]:
 @pytest.mark.parametrize("closed", [True, False])
 @pytest.mark.parametrize(("rows", "zone"), [(3, 9.5), (2, 14.0), (4, 20.0)])
 def test_ways_lead_past_the_last_row_into_the_open(rows: int, zone: float, closed: bool, degrees: float) -> None:
-    survey = hall(rows, zone, degrees, closed)
+    survey = hall(rows, zone, degrees, closed=closed)
     # Two corners below, where the way across ends too; all else are ways on.
     assert kinds(survey) == sorted(["L", "L", "T"] + ["T", "X", "T"] * (rows - 1))
     corridors = survey.of_kind("corridor")
@@ -68,6 +77,22 @@ def test_ways_lead_past_the_last_row_into_the_open(rows: int, zone: float, close
 def test_ways_end_at_the_last_aisle_where_a_wall_runs_behind_its_racks(rows: int) -> None:
     survey = hall(rows, 9.5, wall=True)
     assert kinds(survey) == sorted(["L", "T", "L"] * 2 + ["T", "X", "T"] * (rows - 2))
+
+
+@pytest.mark.parametrize("zone", [9.0, 12.0])
+def test_a_gate_in_a_wall_behind_the_last_row_is_a_door_and_no_way(zone: float) -> None:
+    survey = hall(3, zone, wall=True, gate=True)
+    assert kinds(survey) == sorted(["L", "T", "L"] * 2 + ["T", "X", "T"])
+    assert len(survey.of_kind("door")) == 1
+
+
+@pytest.mark.parametrize("behind", [0.3, 0.6])
+def test_nothing_leads_on_where_the_map_ends_behind_the_last_row(behind: float) -> None:
+    picture = drawn(3, 9.0)[round((9.2 - behind) / RESOLUTION) :]
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    top = picture.shape[0] * RESOLUTION
+    assert all(0 < y < top for corridor in survey.of_kind("corridor") for _, y in corridor["axis"])
+    assert kinds(survey) == sorted(["L", "T", "L"] * 2 + ["T", "X", "T"])
 
 
 @pytest.mark.parametrize("zone", [9.0, 11.0, 14.0])

@@ -93,7 +93,7 @@ fn row_end(view: &Turned, strip: &Strip, side: usize, from: f64) -> Option<f64> 
         let stands = view.some_occupied(columns.clone(), low, high);
         let mut places = columns.clone().zip(stands).filter(|(_, share)| *share > 0.0).map(|(column, _)| column);
         let first = places.next()?;
-        let last = places.last()?;
+        let last = places.next_back()?;
         let [near, far] = if side == 0 { [last, first] } else { [first, last] };
         let [near, far] = [near, far].map(|column| sign * (view.along(column) + view.cell / 2.0 - from));
         (near.abs() <= SAME + view.cell && far - near >= DEPTH.0).then_some(far)

@@ -137,6 +137,8 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
         let is_of_it = |way: &Strip| way.along[0] < candidate.along[1] && candidate.along[0] < way.along[1];
         all.extend(ways.into_iter().filter(|(way, is_cut)| !is_cut && is_of_it(way)).map(|(way, _)| way));
     }
+    // What is wider from side to side than corridors may be is none. Up to here it has kept out what is narrower there, which
+    // is a part of the same space.
     let whole = |way: Strip| {
         let across = widened(view, &way);
         (across[1] - across[0] <= parameters.labels_max_width).then_some(Strip { across, ..way })
