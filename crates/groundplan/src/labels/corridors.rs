@@ -91,8 +91,8 @@ pub const ALIKE: f64 = 0.2;
 pub const ASKEW: f64 = 0.5;
 
 /// Those whose directions have an angle of a smaller sine are one way where a map is bent, and they are looked for at so many
-/// places.
-const BENT: f64 = 0.18;
+/// places. Between wings that are turned by more ways may cross at one place.
+const BENT: f64 = 0.14;
 const LOOKS: usize = 16;
 
 /// True when what is so long and so wide, metres, is too short to be a way by itself.

@@ -224,10 +224,9 @@ impl Plan {
         let is_on =
             |way: &Strip| beyond[way.direction].touching(way.along, way.across).into_iter().any(|n| on[n] == *way);
         found.retain(|way| !is_on(way));
-        let found = corridors::without_bent(views, found);
         let found = rows::without_lanes(views, crossed::without_bays(evidence, look, views, found));
         let found = pillared::widened(views, &slots::without(views, found), evidence.parameters);
-        let found = past_goods::led_on(views, found, least);
+        let found = corridors::without_bent(views, past_goods::led_on(views, found, least));
         let threads = evidence.threads;
         let standing = Standing::new(views, evidence.recall, threads);
         // What was too short to stay bars no way whose sides are no lines, but tells how wide that is.
