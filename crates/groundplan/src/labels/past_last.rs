@@ -12,17 +12,17 @@ use super::turned::Turned;
 use super::{junctions, sided};
 use crate::ends::{around, holds, overlap, shared, sorted, wider};
 
-/// Behind the row it is open where floor goes on for so long, metres, but for this share.
+/// Behind the row it is open where floor goes on for so long, metres, but for this share, and so far beside the strip as well,
+/// but for the other.
 const OPEN: f64 = 4.0;
 const CLUTTER: f64 = 0.05;
+const BESIDE: f64 = 1.0;
+const TAKEN: f64 = 0.3;
 /// A row has an end, or a gap so wide between goods; its back lies so near to where it is seen to end, metres.
 const GAP: f64 = 1.0;
 const BACK: f64 = 0.2;
 /// No corridor runs behind it so far beyond where the deepest row ends, metres.
 const BEHIND: f64 = 2.0;
-/// And so far beside the strip as well, metres, but for this share.
-const BESIDE: f64 = 1.0;
-const TAKEN: f64 = 0.3;
 
 /// The strips, each with what it leads on between the ends of racks, or of one and a wall, that stand along the last aisle that
 /// it meets, where some are known beside that; nothing where none does.
@@ -38,10 +38,10 @@ pub fn led_on(
     let standing: Vec<&Row> = rows.iter().chain(racks).collect();
     let stands = placed(views, standing.iter().map(|row| row.place()));
     let is_aisle = |strip: &Strip| {
-        let near = stands[strip.direction].touching(strip.along, wider(strip.across, SAME));
-        let is_beside =
-            |row: &&Row| overlap(row.along, strip.along) > 0.0 && overlap(row.across, wider(strip.across, SAME)) > 0.0;
-        near.into_iter().map(|n| standing[n]).any(|row| is_beside(&row))
+        let across = wider(strip.across, SAME);
+        let near = stands[strip.direction].touching(strip.along, across).into_iter().map(|n| standing[n]);
+        let mut beside = near.filter(|row| overlap(row.along, strip.along) > 0.0 && overlap(row.across, across) > 0.0);
+        beside.next().is_some()
     };
     let met = of_each(meetings, strips.len());
     let ways = placed(views, strips.iter().map(Strip::place));
