@@ -30,30 +30,31 @@ pub fn is_way(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> boo
     let is_within = |way: &&usize| place.passing[**way].is_within && !place.passing[**way].is_whole();
     let of_row = |row: usize| -> BTreeSet<usize> { place.through[row].iter().filter(is_within).copied().collect() };
     let all: BTreeSet<usize> = part.iter().flat_map(|&row| of_row(row)).collect();
-    let widths = |ways: &BTreeSet<usize>| -> Vec<f64> { ways.iter().map(|&way| strips[way].width()).collect() };
+    let widths_of = |ways: &BTreeSet<usize>| -> Vec<f64> { ways.iter().map(|&way| strips[way].width()).collect() };
+    let lengths = |least: f64| -> Vec<f64> { part.iter().flat_map(|&row| standing(place, row, least)).collect() };
     let is_count = |count: usize, many: f64| (SEVERAL as f64..=many * part.len() as f64).contains(&(count as f64));
     let rest = |least: f64| Rest::but_for_wider(place.views[0], part.iter().map(|&row| place.shelves(row)), least);
 
-    let mut alike = widths(&all);
-    alike.retain(|&other| are_alike(other, width));
-    if part.len() >= ROWS && is_count(alike.len(), MANY) && rest(width).is_closed() {
-        let lengths: Vec<f64> = part.iter().flat_map(|&row| standing(place, row, width)).collect();
-        if !are_bays(&lengths, &alike) {
-            return true;
-        }
+    let widths = widths_of(&all);
+    let alike: Vec<f64> = widths.iter().copied().filter(|&other| are_alike(other, width)).collect();
+    if part.len() >= ROWS
+        && is_count(alike.len(), MANY)
+        && rest(width).is_closed()
+        && !are_bays(&lengths(width), &alike)
+    {
+        return true;
     }
-    let least = widths(&all).into_iter().fold(width, f64::min);
+    let least = widths.iter().copied().fold(width, f64::min);
     let rest = rest(least);
     let through: usize = part.iter().map(|&row| of_row(row).len()).sum();
     // Where as much is open beside something that stands in it, that is an empty bay.
     if !is_count(all.len(), OF_ALL) || rest.open() != through || !rest.is_closed() {
         return false;
     }
-    let lengths: Vec<f64> = part.iter().flat_map(|&row| standing(place, row, least)).collect();
     // Bays of one row may be longer than those of another.
-    let open: Vec<usize> = part.into_iter().filter(|&row| !of_row(row).is_empty()).collect();
-    let have_bays = |row: &&usize| are_bays(&standing(place, **row, least), &widths(&of_row(**row)));
-    !are_bays(&lengths, &widths(&all)) && (open.len() < ROWS || 2 * open.iter().filter(have_bays).count() < open.len())
+    let open: Vec<usize> = part.iter().copied().filter(|&row| !of_row(row).is_empty()).collect();
+    let have_bays = |row: &&usize| are_bays(&standing(place, **row, least), &widths_of(&of_row(**row)));
+    !are_bays(&lengths(least), &widths) && (open.len() < ROWS || 2 * open.iter().filter(have_bays).count() < open.len())
 }
 
 /// How long what stands of a row is, between gaps no narrower than so much, metres; nothing where it has no gaps.

@@ -124,7 +124,7 @@ impl Turned {
             self.share_touched(far.clone(), low, high) > 0.0
         };
         let rows = self.in_columns(FAR);
-        let [low, top] = [self.start[1], self.start[1] + self.size[1] as f64 * self.cell];
+        let [low, top] = self.reach_across();
         let end = if side == 0 { across - low } else { top - across };
         [side, 1 - side].into_iter().all(|side| blocked(&inner, NEAR, side) <= CLEAR)
             && beside.iter().all(|columns| blocked(columns, BEHIND, side) >= HIDDEN)

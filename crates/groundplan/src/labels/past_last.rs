@@ -60,9 +60,8 @@ pub fn led_on(
             let Some((aisle, from)) = farthest.filter(|(m, _)| is_aisle(&strips[*m])) else { continue };
             let Some(end) = row_end(view, strip, side, from) else { continue };
             let [behind, beyond, past] = [end + sign * SAME, end + sign * OPEN, from + sign * (DEPTH.1 + BEHIND)];
-            let on_map = [view.start[0], view.start[0] + view.size[0] as f64 * view.cell];
             // Nothing is known beyond the map.
-            let leads_on = holds(on_map, beyond)
+            let leads_on = holds([view.along(0), view.along(view.size[0])], beyond)
                 && is_open(view, strip, sorted([from - sign * SAME, beyond]))
                 && is_row(view, strip, reached_by(views, strip, &strips[aisle]), end, [behind, beyond])
                 && !is_crossed(views, strip, sorted([from + sign * SAME, past]), strips, &ways);
@@ -128,7 +127,7 @@ fn is_row(view: &Turned, strip: &Strip, aisle: [f64; 2], end: f64, [behind, beyo
         [false, false] => false,
         [true, true] => {
             let back = view.columns(wider([end; 2], BACK));
-            let [first, last] = shared(aisle, [view.start[1], view.start[1] + view.size[1] as f64 * view.cell]);
+            let [first, last] = shared(aisle, view.reach_across());
             let is_free = |n: usize| {
                 let row = first + n as f64 * view.cell;
                 // Of the strip itself it is known.

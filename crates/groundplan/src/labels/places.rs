@@ -128,8 +128,8 @@ fn suffix(n: usize) -> String {
 
 /// Free share of each column.
 fn free_columns(view: &Turned) -> Vec<f64> {
-    let top = view.start[1] + view.size[1] as f64 * view.cell;
-    view.all_blocked(view.start[1], top).into_iter().map(|blocked| 1.0 - blocked).collect()
+    let [low, top] = view.reach_across();
+    view.all_blocked(low, top).into_iter().map(|blocked| 1.0 - blocked).collect()
 }
 
 /// How much of each row is free.

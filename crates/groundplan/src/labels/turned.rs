@@ -336,6 +336,11 @@ impl Turned {
         self.start[0] + column as f64 * self.cell
     }
 
+    /// From where to where it reaches across.
+    pub fn reach_across(&self) -> [f64; 2] {
+        [self.start[1], self.start[1] + self.size[1] as f64 * self.cell]
+    }
+
     /// The column whose lower border is the nearest to place `u`.
     pub fn border(&self, u: f64) -> usize {
         ((u - self.start[0]) / self.cell).round() as usize

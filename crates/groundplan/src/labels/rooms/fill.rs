@@ -40,6 +40,7 @@ pub fn fill_runs(raster: &Raster, mut regions: Runs) -> Runs {
     let index = |run: usize| loose.binary_search(&(run as u32)).ok();
     let mut sets = Sets::new(loose.len());
     regions.beside(|one, other| {
+        // Most have one, and none of these is looked up.
         if regions.all[one].number == 0
             && regions.all[other].number == 0
             && let (Some(one), Some(other)) = (index(one), index(other))
