@@ -63,3 +63,23 @@ def test_a_corridor_behind_a_door_is_none_of_glass() -> None:
     picture[(x > 0.3) & (x < 20) & (abs(abs(y) - 1.8) < 0.1)] = 0
     survey = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION, origin=(-16, -12))
     assert [[round(x) for x, _ in way["axis"]] for way in survey.of_kind("corridor")] == [[0, 20]]
+
+
+def behind_a_slit(*, is_walled: bool) -> groundplan.Survey:
+    """A room of 6 by 8 m, and 8 m of floor half a metre wide behind a slit in its wall, as rays show it, or walls."""
+    y, x = np.mgrid[-6.0:6.0:RESOLUTION, -8.0:14.0:RESOLUTION]
+    picture = np.full(x.shape, 205, dtype=np.uint8)
+    picture[(x > -6.1) & (x < 0.1) & (abs(y) < 4.1)] = 0
+    picture[(x > -6) & (x < 0) & (abs(y) < 4)] = 254
+    half = np.clip(0.15 + 0.25 * x, 0.15, 0.275)
+    if is_walled:
+        picture[(x >= 0) & (x < 8.1) & (abs(y) < half + 0.1)] = 0
+    picture[(x > -RESOLUTION) & (x < 8) & (abs(y) < half)] = 254
+    return groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION)
+
+
+@pytest.mark.parametrize("is_walled", [False, True])
+def test_a_ray_through_a_slit_is_no_room_but_a_narrow_room_is(is_walled: bool) -> None:
+    survey = behind_a_slit(is_walled=is_walled)
+    found = [len(survey.of_kind(kind)) for kind in ("region", "door")]
+    assert found == ([2, 1] if is_walled else [1, 0])

@@ -21,6 +21,7 @@ mod narrows;
 mod openings;
 mod outlines;
 mod raster;
+mod rays;
 mod regions;
 mod runs;
 mod squared;

@@ -5,6 +5,7 @@ use super::super::places::Squares;
 use super::super::{Evidence, Purpose, outline};
 use super::fill::fill_runs;
 use super::raster::Raster;
+use super::rays;
 use super::runs::{Run, Runs};
 use super::{Racked, Space, Width};
 use crate::bands::map_each;
@@ -46,8 +47,7 @@ pub struct Region {
 impl Region {
     /// By its shape, its doors and its square metres.
     pub fn purpose(&self, raster: &Raster, doors: usize, area: f64) -> Purpose {
-        // The mean distance to the walls of a long strip is a quarter of its width.
-        let width = 4.0 * self.distances / self.measured.max(1) as f64;
+        let width = mean_width(self.distances, self.measured);
         let length = self.pixels as f64 / width;
         let is_long = length >= LONG * width && doors as f64 * raster.pixels(DOOR_EVERY) >= length;
         if doors >= 2 && is_long {
@@ -96,6 +96,15 @@ impl Piece {
         self.measured += run.len();
         self.distances += width.sum;
     }
+
+    fn width(&self) -> f64 {
+        mean_width(self.distances, self.measured)
+    }
+}
+
+/// The mean distance to the walls of a long strip is a quarter of its width.
+fn mean_width(distances: f64, measured: usize) -> f64 {
+    4.0 * distances / measured.max(1) as f64
 }
 
 /// Row by row from the top: every region one connected piece, without what nobody could stand in, numbered from 1.
@@ -114,6 +123,8 @@ pub fn find(
     clearance.along(raster, &numbers, evidence.threads, evidence.recall, |n, width| {
         all[pieces[n] as usize].measure(&numbers.all[n], width);
     });
+    let narrow: Vec<bool> = all.iter().map(|piece| piece.width() < raster.pixels(rays::NARROW)).collect();
+    let rays = rays::find(evidence, raster, &numbers, &pieces, &narrow);
     let mut largest = BTreeMap::new();
     for (n, piece) in all.iter().enumerate().skip(1) {
         let best = largest.entry(piece.region).or_insert(n);
@@ -142,7 +153,8 @@ pub fn find(
             let least =
                 if largest.get(&piece.region) == Some(&n) { ALONE.0 } else { evidence.parameters.rooms_min_area };
             let area = piece.seen as f64 * raster.resolution.powi(2);
-            let stands = n > 0 && area >= least && f64::from(piece.widest) >= radius * radius && !within_rack(n);
+            let has_room = area >= least && f64::from(piece.widest) >= radius * radius;
+            let stands = n > 0 && has_room && !rays[n] && !within_rack(n);
             count += u32::from(stands);
             if stands { count } else { 0 }
         })
