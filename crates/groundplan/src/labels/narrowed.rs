@@ -58,10 +58,15 @@ pub fn past(views: &[Turned], strips: &[Strip], racks: &[Row], reached: &[[f64; 
         let places: Vec<_> = racks.iter().map(|rack| place(view, &views[rack.direction], rack)).collect();
         let mut placed = Beside::of(view);
         places.iter().enumerate().for_each(|(n, &[along, across])| placed.add(n, along, across));
-        let is_across = |n: &usize| libm::cos(views[racks[*n].direction].angle - view.angle).abs() <= ASKEW;
+        // Faces along a way are known more closely than where racks across it end.
+        let counts_from = |n: usize| {
+            let racked = racks[n].direction;
+            let is_across = || libm::cos(views[racked].angle - view.angle).abs() <= ASKEW;
+            if racked == view.direction { Some(NEAR) } else { is_across().then_some(SAME) }
+        };
         for (strip, reached) in past.iter_mut().zip(reached).filter(|(strip, _)| strip.direction == view.direction) {
-            let across = placed.touching(strip.along, strip.across).into_iter().filter(is_across);
-            let left = between(strip, across.map(|n| places[n]));
+            let near = placed.touching(strip.along, strip.across).into_iter();
+            let left = between(strip, near.filter_map(|n| Some((places[n], counts_from(n)?))));
             if left == strip.across || left[1] - left[0] < least.max(LEFT * strip.width()) {
                 continue;
             }
@@ -78,12 +83,13 @@ pub fn past(views: &[Turned], strips: &[Strip], racks: &[Row], reached: &[[f64; 
 }
 
 /// What is left of a strip between racks, each of which takes what is beyond it from the side that it is nearer to.
-fn between(strip: &Strip, racks: impl Iterator<Item = [[f64; 2]; 2]>) -> [f64; 2] {
+/// It counts from so far within the strip on.
+fn between(strip: &Strip, racks: impl Iterator<Item = ([[f64; 2]; 2], f64)>) -> [f64; 2] {
     let mut left = strip.across;
     // At its ends it goes past what stands along the ways that it meets.
     let stretch = wider(strip.along, -strip.width());
-    for [along, across] in racks {
-        if overlap(along, stretch) < SAME || overlap(across, strip.across) < SAME {
+    for ([along, across], least) in racks {
+        if overlap(along, stretch) < SAME || overlap(across, strip.across) < least {
             continue;
         }
         if f64::midpoint(across[0], across[1]) < strip.middle() {
