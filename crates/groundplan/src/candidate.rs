@@ -26,6 +26,8 @@ const BENT: (f64, f64) = (2.0, 0.1);
 #[derive(Clone, Copy)]
 pub struct Candidate {
     pub angle: f64,
+    /// The mean of what lies along it where the map is bent, else the same.
+    pub mean: f64,
     /// Metres of structure that line up along it.
     pub metres: f64,
     /// At which of the controls clearly less lines up: scattered pixels line up there as well as they do here.
@@ -97,7 +99,7 @@ mod tests {
     use super::*;
 
     fn candidate(degrees: f64, metres: f64) -> Candidate {
-        Candidate { angle: degrees.to_radians(), metres, quiet: [true; CONTROLS_DEG.len()] }
+        Candidate { angle: degrees.to_radians(), mean: degrees.to_radians(), metres, quiet: [true; CONTROLS_DEG.len()] }
     }
 
     #[test]

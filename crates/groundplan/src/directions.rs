@@ -1,6 +1,7 @@
 //! II-A: the histogram of oriented gradients finds the directions, the sharpness of their radiograms measures them.
 
 use crate::aligned::{ALIGNED_DEG, aligned, take};
+use crate::bent;
 use crate::candidate::{CONTROLS_DEG, Candidate, NONE_QUIET, SQUARE, WING, alone, is_square, seconds, wings};
 use crate::gradients::Gradients;
 use crate::grid::{Frame, angle_between, tidy, tidy_angle, undirected};
@@ -74,7 +75,7 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
     let sum: f64 = found.iter().map(|f| f.metres).sum();
     let total = gradients.pixels.len() as f64 * frame.resolution;
     Directions {
-        angles: found.iter().map(|f| tidy_angle(frame.angle_to_map(f.angle))).collect(),
+        angles: found.iter().map(|f| tidy_angle(frame.angle_to_map(f.mean))).collect(),
         weights: found.iter().map(|f| if strongest > 0.0 { tidy(f.metres / strongest) } else { 0.0 }).collect(),
         histogram,
         explained: if total > 0.0 { tidy((sum / total).min(1.0)) } else { 0.0 },
@@ -94,7 +95,7 @@ fn measure(
         if found.iter().all(|other| angle_between(other.angle, angle) > SAME_DIRECTION) {
             let lines = aligned(frame, rest, angle, threads);
             take(rest, angle, &lines, parameters);
-            found.push(Candidate { angle, metres: lines.metres, quiet: NONE_QUIET });
+            found.push(Candidate { angle, mean: angle, metres: lines.metres, quiet: NONE_QUIET });
         }
     }
     found
@@ -148,10 +149,12 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
                 continue;
             }
             let quiet = if metres >= useful { quiet(frame, rest, angle, metres, threads) } else { NONE_QUIET };
+            let mean = bent::mean(&rest.along(angle, tolerance), angle, separation, frame.resolution);
+            let mean = mean.map_or(angle, |mean| undirected(settled(diagonal, mean)));
             strongest = strongest.max(metres);
             take(rest, angle, &lines, parameters);
             found.retain(|other| is_far(other, angle, separation));
-            found.push(Candidate { angle, metres, quiet });
+            found.push(Candidate { angle, mean, metres, quiet });
             candidates = self::candidates(rest.histogram());
         }
     }

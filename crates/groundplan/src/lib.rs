@@ -28,6 +28,7 @@ pub mod adjacency;
 mod aligned;
 pub mod arrangement;
 mod bands;
+mod bent;
 mod bits;
 mod candidate;
 mod coverage;

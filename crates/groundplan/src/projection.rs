@@ -2,6 +2,7 @@
 
 use crate::bands::fold;
 use crate::ends::around;
+use std::collections::BTreeMap;
 
 /// A pixel's weight, in whole parts.
 pub(crate) const FRACTIONS: u32 = 16;
@@ -79,6 +80,23 @@ impl Points {
 
     pub fn len(&self) -> usize {
         self.xs.len()
+    }
+
+    /// The longer side of what all lie within.
+    pub fn extent(&self) -> f64 {
+        self.within.iter().map(|[low, high]| high - low).fold(0.0, f64::max)
+    }
+
+    /// Those in each square of such a side, by its column and row.
+    pub fn blocks(&self, side: f64) -> BTreeMap<[i32; 2], Self> {
+        let mut blocks: BTreeMap<[i32; 2], [Vec<f32>; 2]> = BTreeMap::new();
+        for (&x, &y) in self.xs.iter().zip(&self.ys) {
+            let place = [x, y].map(|at| (f64::from(at) / side).floor() as i32);
+            let [xs, ys] = blocks.entry(place).or_default();
+            xs.push(x);
+            ys.push(y);
+        }
+        blocks.into_iter().map(|(place, [xs, ys])| (place, Self::new(xs, ys))).collect()
     }
 
     /// Across `angle`, with so many bins to the pixel, and `margin` of them free at both ends.

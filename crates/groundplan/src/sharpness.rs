@@ -7,7 +7,7 @@ use std::borrow::Cow;
 /// greatest where walls fall on single bins. The bins are finer than a pixel and smoothed over one or more, so that it
 /// does not matter where between the bins a wall falls: else an angle slightly off, at which the walls happen to fall
 /// upon bins, would look sharper than the right one.
-struct Sharpness<'a> {
+pub(crate) struct Sharpness<'a> {
     points: &'a Points,
     narrow: bool,
     small: Vec<u32>,
@@ -24,7 +24,7 @@ const LANES: usize = 8;
 type Bins = [u32; CHUNK];
 
 impl<'a> Sharpness<'a> {
-    fn new(points: &'a Points, threads: usize) -> Self {
+    pub fn new(points: &'a Points, threads: usize) -> Self {
         Self { points, narrow: points.are_narrow(), small: Vec::new(), large: Vec::new(), threads }
     }
 
@@ -40,7 +40,7 @@ impl<'a> Sharpness<'a> {
 
     /// Of many bins, smoothed over a pixel, so that walls of two halls that are a little apart are not one where the angle
     /// is slightly off; and of a power at which each wall has its say, not the longest alone.
-    fn finely_at(&mut self, angle: f64) -> f64 {
+    pub fn finely_at(&mut self, angle: f64) -> f64 {
         self.over::<4, 4>(angle, powers)
     }
 
@@ -125,7 +125,7 @@ pub(crate) fn sharpest(
     threads: usize,
     worth: impl Fn(f64) -> bool,
 ) -> Option<f64> {
-    let sample = sample(pixels);
+    let sample = sample(pixels, SAMPLE);
     let mut some = Sharpness::new(&sample, threads);
     let mut best = scan(start, |angle| some.roughly_at(angle));
     let mut step = STEP_DEG.to_radians() / 2.0;
@@ -196,15 +196,19 @@ impl Best {
                 right = sharpness(self.angle + step);
             }
         }
-        let bend = left - 2.0 * self.value + right;
-        let off = if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 };
-        self.angle + step * off
+        self.angle + step * parabola(left, self.value, right)
     }
 }
 
-/// About so many of the pixels as a sample has, by where they are: what changes elsewhere changes nothing of it.
-fn sample(pixels: &Points) -> Cow<'_, Points> {
-    let share = (pixels.len() / SAMPLE + 1).ilog2();
+/// Where the parabola through three values a step apart has its top, steps from the middle one; no more than half of one.
+pub(crate) fn parabola(left: f64, middle: f64, right: f64) -> f64 {
+    let bend = left - 2.0 * middle + right;
+    if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 }
+}
+
+/// About so many of the pixels, by where they are: what changes elsewhere changes nothing of it.
+pub(crate) fn sample(pixels: &Points, count: usize) -> Cow<'_, Points> {
+    let share = (pixels.len() / count + 1).ilog2();
     let hash = |[x, y]: [u32; 2]| (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77)).wrapping_mul(0xC2B2_AE3D);
     if share == 0 {
         return Cow::Borrowed(pixels);

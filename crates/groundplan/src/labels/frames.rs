@@ -46,6 +46,15 @@ impl Frame {
     }
 }
 
+/// What may be a leg.
+#[derive(Clone, Copy)]
+struct Leg {
+    /// Along and across.
+    at: [f64; 2],
+    /// How long it is along and across together, metres.
+    size: f64,
+}
+
 /// The frames that uprights make across a heading, by their places along it, and all legs.
 pub fn frames(uprights: &[Upright], [cos, sin]: [f64; 2]) -> (Vec<Frame>, Legs) {
     let (mut frames, mut deep) = (Vec::new(), Vec::new());
@@ -58,11 +67,12 @@ pub fn frames(uprights: &[Upright], [cos, sin]: [f64; 2]) -> (Vec<Frame>, Legs) 
             continue;
         }
         if across <= LEG {
-            all.push([u, v]);
+            all.push(Leg { at: [u, v], size: along + across });
             continue;
         }
         if across <= TWO {
-            all.extend([-1.0, 1.0].map(|side| [u, v + side * (across / 2.0 - HALF)]));
+            let own = |side: f64| Leg { at: [u, v + side * (across / 2.0 - HALF)], size: 2.0 * along };
+            all.extend([-1.0, 1.0].map(own));
         }
         let plate = Frame { at: u, faces: [v - across / 2.0 + HALF, v + across / 2.0 - HALF], is_plate: true };
         if holds(DEPTH, plate.depth()) {
@@ -73,7 +83,7 @@ pub fn frames(uprights: &[Upright], [cos, sin]: [f64; 2]) -> (Vec<Frame>, Legs) 
         }
     }
     let legs = Legs::new(&all);
-    frames.extend(all.iter().filter_map(|&leg| legs.frame(leg)));
+    frames.extend(all.iter().filter_map(|leg| legs.frame(leg.at)));
     let shared = shared_plates(&deep, &frames);
     frames.extend(shared);
     frames.sort_by(|a, b| a.at.total_cmp(&b.at));
@@ -107,17 +117,17 @@ fn shared_plates(plates: &[Frame], frames: &[Frame]) -> Vec<Frame> {
     plates.iter().filter_map(both).flatten().collect()
 }
 
-/// Legs by columns as wide as they may be off, of each the places across, ascending, and along.
-pub struct Legs(BTreeMap<i64, Vec<[f64; 2]>>);
+/// Legs by columns as wide as they may be off, in the order of their places across.
+pub struct Legs(BTreeMap<i64, Vec<Leg>>);
 
 impl Legs {
-    fn new(legs: &[[f64; 2]]) -> Self {
-        let mut columns: BTreeMap<i64, Vec<[f64; 2]>> = BTreeMap::new();
-        for &[u, v] in legs {
-            columns.entry(Self::column(u)).or_default().push([v, u]);
+    fn new(legs: &[Leg]) -> Self {
+        let mut columns: BTreeMap<i64, Vec<Leg>> = BTreeMap::new();
+        for leg in legs {
+            columns.entry(Self::column(leg.at[0])).or_default().push(*leg);
         }
         for column in columns.values_mut() {
-            column.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            column.sort_by(|a, b| a.at[1].total_cmp(&b.at[1]));
         }
         Self(columns)
     }
@@ -128,12 +138,17 @@ impl Legs {
 
     /// True when a leg of a frame stands at a place along, be the other one not seen.
     pub fn stand_at(&self, u: f64, faces: [f64; 2]) -> bool {
+        self.sizes_at(u, faces).next().is_some()
+    }
+
+    /// How large those are that stand at a place along, be it that of one leg of a frame.
+    pub fn sizes_at(&self, u: f64, faces: [f64; 2]) -> impl Iterator<Item = f64> {
         let own = Self::column(u);
-        self.0.range(own.saturating_sub(1)..=own.saturating_add(1)).any(|(_, column)| {
-            faces.iter().any(|face| {
-                let first = column.partition_point(|leg| leg[0] < face - NEAR);
-                column[first..].iter().take_while(|leg| leg[0] <= face + NEAR).any(|leg| (leg[1] - u).abs() <= NEAR)
-            })
+        let columns = self.0.range(own.saturating_sub(1)..=own.saturating_add(1));
+        columns.flat_map(move |(_, column)| faces.map(|face| (column, face))).flat_map(move |(column, face)| {
+            let first = column.partition_point(|leg| leg.at[1] < face - NEAR);
+            let near = column[first..].iter().take_while(move |leg| leg.at[1] <= face + NEAR);
+            near.filter(move |leg| (leg.at[0] - u).abs() <= NEAR).map(|leg| leg.size)
         })
     }
 
@@ -141,15 +156,16 @@ impl Legs {
     fn next(&self, [u, v]: [f64; 2], side: f64) -> Option<[f64; 2]> {
         let own = Self::column(u);
         let near = self.0.range(own.saturating_sub(1)..=own.saturating_add(1)).filter_map(|(_, column)| {
-            let is_next = |leg: &&[f64; 2]| (leg[1] - u).abs() <= NEAR && (leg[0] - v) * side > LEG / 2.0;
-            let first = column.partition_point(|leg| leg[0] <= v);
+            let is_next = |leg: &&Leg| (leg.at[0] - u).abs() <= NEAR && (leg.at[1] - v) * side > LEG / 2.0;
+            let first = column.partition_point(|leg| leg.at[1] <= v);
             if side > 0.0 {
-                column[first..].iter().take_while(|leg| leg[0] <= v + AISLE).find(is_next)
+                column[first..].iter().take_while(|leg| leg.at[1] <= v + AISLE).find(is_next)
             } else {
-                column[..first].iter().rev().take_while(|leg| leg[0] >= v - AISLE).find(is_next)
+                column[..first].iter().rev().take_while(|leg| leg.at[1] >= v - AISLE).find(is_next)
             }
         });
-        near.min_by(|a, b| (a[0] - v).abs().total_cmp(&(b[0] - v).abs())).map(|leg| [leg[1], leg[0]])
+        let off = |leg: &Leg| (leg.at[1] - v).abs();
+        near.min_by(|a, b| off(a).total_cmp(&off(b))).map(|leg| leg.at)
     }
 
     /// The frame that a leg makes with the next one.

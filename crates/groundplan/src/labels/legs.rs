@@ -47,6 +47,8 @@ const LOST: f64 = 0.5;
 /// What ends one bay before a wall, but for so much, metres, may lean on it; no way leads past shorter bays.
 const UP_TO_WALL: f64 = 0.25;
 const NARROW: f64 = 1.2;
+/// What is smaller than this share of a rack's legs is none where one stands alone.
+const SPECK: f64 = 0.6;
 /// A wall across a row is seen over so much of it.
 const WALL: f64 = 0.9;
 
@@ -247,16 +249,20 @@ fn pieces<'a>(row: &'a [Frame], legs: &Legs, map: &Map) -> Vec<&'a [Frame]> {
 }
 
 /// The rack of some frames, with those at its ends of which one leg was not seen, unless a wall parts them from it: specks
-/// lie behind that.
+/// lie behind that, and elsewhere a few that are smaller than legs.
 fn rack(direction: usize, row: &[Frame], legs: &Legs, map: &Map) -> Rack {
     let [first, last] = [row[0].at, row[row.len() - 1].at];
     let bays = gap(row).map_or(1.0, |gap| ((last - first) / gap).round().max(1.0));
     let pitch = (last - first) / bays;
     let mean = |face: usize| row.iter().map(|frame| frame.faces[face]).sum::<f64>() / row.len() as f64;
     let across = [mean(0), mean(1)];
+    let mut sizes: Vec<f64> = row.iter().flat_map(|frame| legs.sizes_at(frame.at, frame.faces)).collect();
+    sizes.sort_by(f64::total_cmp);
+    let least = sizes.get(sizes.len() / 2).map_or(0.0, |usual| SPECK * usual);
+    let is_leg = |place: f64| legs.sizes_at(place, across).any(|size| size >= least);
     let beyond = |from: f64, by: f64| {
         let mut off = 0.0;
-        while legs.stand_at(from + off + by, across) && !map.is_walled(sorted([from + off, from + off + by]), across) {
+        while is_leg(from + off + by) && !map.is_walled(sorted([from + off, from + off + by]), across) {
             off += by;
         }
         off

@@ -1,0 +1,121 @@
+//! II-A, where drift has bent the map: what lies along one direction of the site lies along another angle in each part of
+//! the map. The sharpest angle is that of the part with the longest walls; the direction is the mean over all parts.
+
+use crate::projection::Points;
+use crate::sharpness::{Sharpness, parabola, sample};
+use std::collections::BTreeMap;
+
+/// Blocks are squares of so many metres, or so many of them along the longer side of all pixels.
+const BLOCK: f64 = 8.0;
+const BLOCKS: f64 = 8.0;
+/// So many pixels are asked, and so many of a block at least.
+const SAMPLE: usize = 8192;
+const FEWEST: usize = 30;
+/// Blocks that so much beside the angle are sharper than there, degrees, have this share of all pixels where a map is bent.
+const ASIDE_DEG: f64 = 0.4;
+const ASIDE: f64 = 0.25;
+/// The angles that a block is asked at, degrees.
+const STEP_DEG: f64 = 0.25;
+/// Angles of blocks side by side differ by this share of what those of any two do, or it is noise. Of so many pairs.
+const ALIKE: f64 = 0.4;
+const PAIRS: usize = 6;
+/// Each at its own angle the blocks stand out of what lies at any by this share more than all at one.
+const GAIN: f64 = 0.08;
+/// The mean is taken about the last one, so often, or until it has moved by no more than this, degrees.
+const ROUNDS: usize = 3;
+const STILL_DEG: f64 = 0.05;
+
+/// A block's place in columns and rows of blocks, and its pixels.
+type Block = ([i32; 2], Points);
+
+/// The mean angle of what lies within `reach` of the sharpest one, radians, where that differs from block to block as on a
+/// bent map: by little from one to the next, by more across the map. Else nothing.
+pub(crate) fn mean(pixels: &Points, angle: f64, reach: f64, resolution: f64) -> Option<f64> {
+    let pixels = sample(pixels, SAMPLE);
+    let side = (BLOCK / resolution).max(pixels.extent() / BLOCKS);
+    let mut blocks: Vec<Block> = pixels.blocks(side).into_iter().collect();
+    blocks.retain(|(_, block)| block.len() >= FEWEST);
+    let is_aside = |block: &Points| {
+        let mut own = Sharpness::new(block, 1);
+        let [here, aside] = [0.0, ASIDE_DEG.to_radians()]
+            .map(|turn| [angle - turn, angle + turn].map(|angle| own.finely_at(angle)).into_iter().fold(0.0, f64::max));
+        aside > here
+    };
+    let count = |blocks: &mut dyn Iterator<Item = &Block>| blocks.map(|(_, block)| block.len()).sum::<usize>() as f64;
+    if count(&mut blocks.iter().filter(|(_, block)| is_aside(block))) < ASIDE * count(&mut blocks.iter()) {
+        return None;
+    }
+    let mut middle = angle;
+    for _ in 0..ROUNDS {
+        let turns = Turns::about(middle, reach, &blocks);
+        if middle == angle && !turns.are_bent() {
+            return None;
+        }
+        let turn = turns.mean();
+        middle += turn;
+        if turn.abs() <= STILL_DEG.to_radians() {
+            break;
+        }
+    }
+    Some(middle)
+}
+
+/// By how much blocks are turned against an angle.
+struct Turns {
+    /// By place: the turn, and how far the block stands out there of what it is at any angle.
+    own: BTreeMap<[i32; 2], (f64, f64)>,
+    /// How far all stand out, each at its own angle, and all at the one.
+    out: [f64; 2],
+}
+
+impl Turns {
+    fn about(angle: f64, reach: f64, blocks: &[Block]) -> Self {
+        let (mut own, mut out) = (BTreeMap::new(), [0.0; 2]);
+        let step = STEP_DEG.to_radians();
+        let steps = (reach / step).round() as i32;
+        for (place, block) in blocks {
+            let mut sharpness = Sharpness::new(block, 1);
+            let values: Vec<f64> = (-steps..=steps).map(|n| sharpness.finely_at(angle + f64::from(n) * step)).collect();
+            let best = (0..values.len()).max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0);
+            // What goes on beyond lies along another direction.
+            let Some(&[left, top, right]) = values.get(best.wrapping_sub(1)..best + 2).and_then(|v| v.first_chunk())
+            else {
+                continue;
+            };
+            let mut ranked = values.clone();
+            let usual = *ranked.select_nth_unstable_by(values.len() / 2, f64::total_cmp).1;
+            let turn = (best as f64 - f64::from(steps) + parabola(left, top, right)) * step;
+            own.insert(*place, (turn, top - usual));
+            out[0] += top - usual;
+            out[1] += values[steps as usize] - usual;
+        }
+        Self { own, out }
+    }
+
+    fn mean(&self) -> f64 {
+        let [sum, weight] =
+            self.own.values().fold([0.0; 2], |[sum, all], (turn, weight)| [sum + turn * weight, all + weight]);
+        if weight > 0.0 { sum / weight } else { 0.0 }
+    }
+
+    /// True where blocks side by side are turned alike, and those farther apart are not.
+    fn are_bent(&self) -> bool {
+        let mean = self.mean();
+        let (mut spread, mut all) = (0.0, 0.0);
+        let (mut beside, mut both, mut pairs) = (0.0, 0.0, 0);
+        for ([x, y], (turn, weight)) in &self.own {
+            spread += weight * (turn - mean).powi(2);
+            all += weight;
+            for next in [[x + 1, *y], [*x, y + 1], [x + 1, y + 1], [x + 1, y - 1]] {
+                if let Some((other, its)) = self.own.get(&next) {
+                    beside += weight.min(*its) * (turn - other).powi(2);
+                    both += weight.min(*its);
+                    pairs += 1;
+                }
+            }
+        }
+        // Of two that have nothing to do with one another the difference has twice the spread.
+        let are_alike = pairs >= PAIRS && beside * all <= ALIKE * 2.0 * spread * both;
+        are_alike && self.out[0] >= (1.0 + GAIN) * self.out[1]
+    }
+}
