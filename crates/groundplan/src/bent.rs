@@ -1,9 +1,12 @@
 //! II-A, where drift has bent the map: what lies along one direction of the site lies along another angle in each part of
 //! the map. The sharpest angle is that of the part with the longest walls; the direction is the mean over all parts.
 
+use crate::candidate::Candidate;
+use crate::grid::undirected;
 use crate::projection::Points;
 use crate::sharpness::{Sharpness, parabola, sample};
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
 
 /// Blocks are squares of so many metres, or so many of them along the longer side of all pixels.
 const BLOCK: f64 = 8.0;
@@ -21,16 +24,60 @@ const ALIKE: f64 = 0.4;
 const PAIRS: usize = 6;
 /// Each at its own angle the blocks stand out of what lies at any by this share more than all at one.
 const GAIN: f64 = 0.08;
+/// What is of one direction lies so much farther off than blocks are turned at most, degrees.
+const SLACK_DEG: f64 = 1.0;
 /// The mean is taken about the last one, so often, or until it has moved by no more than this, degrees.
 const ROUNDS: usize = 3;
 const STILL_DEG: f64 = 0.05;
+
+/// What lies along a direction of a bent map.
+#[derive(Clone, Copy)]
+pub(crate) struct Bent {
+    /// The mean angle, radians.
+    pub mean: f64,
+    /// How far from that it lies in a block at most.
+    pub reach: f64,
+}
+
+/// The directions, without those of which others that the map has bent are too: what lies along one of these in some block,
+/// or square to it, is of one direction.
+pub(crate) fn joined(mut found: Vec<Candidate>) -> Vec<Candidate> {
+    let mut n = 0;
+    while n < found.len() {
+        if let Some(Bent { mean, reach }) = found[n].bent {
+            let within = reach + SLACK_DEG.to_radians();
+            for (turn, first) in [(0.0, Some(n)), (FRAC_PI_2, None)] {
+                join(&mut found, mean + turn, within, first);
+            }
+        }
+        n += 1;
+    }
+    found
+}
+
+/// Makes one direction of all within so much of an angle, the strongest or the one that is given.
+fn join(found: &mut Vec<Candidate>, angle: f64, within: f64, first: Option<usize>) {
+    let off = |f: &Candidate| undirected(f.mean() - angle);
+    let own: Vec<usize> = (0..found.len()).filter(|&n| off(&found[n]).abs() <= within).collect();
+    let Some(first) = first.or(own.first().copied()).filter(|_| own.len() > 1) else { return };
+    let metres: f64 = own.iter().map(|&n| found[n].metres).sum();
+    let mean =
+        angle + own.iter().map(|&n| found[n].metres * off(&found[n])).sum::<f64>() / metres.max(f64::MIN_POSITIVE);
+    let reach = own.iter().map(|&n| undirected(found[n].mean() - mean).abs()).fold(0.0, f64::max);
+    found[first].bent = Some(Bent { mean, reach: found[first].bent.map_or(reach, |bent| bent.reach.max(reach)) });
+    let mut n = 0;
+    found.retain(|_| {
+        n += 1;
+        n - 1 == first || !own.contains(&(n - 1))
+    });
+}
 
 /// A block's place in columns and rows of blocks, and its pixels.
 type Block = ([i32; 2], Points);
 
 /// The mean angle of what lies within `reach` of the sharpest one, radians, where that differs from block to block as on a
 /// bent map: by little from one to the next, by more across the map. Else nothing.
-pub(crate) fn mean(pixels: &Points, angle: f64, reach: f64, resolution: f64) -> Option<f64> {
+pub(crate) fn find(pixels: &Points, angle: f64, reach: f64, resolution: f64) -> Option<Bent> {
     let pixels = sample(pixels, SAMPLE);
     let side = (BLOCK / resolution).max(pixels.extent() / BLOCKS);
     let mut blocks: Vec<Block> = pixels.blocks(side).into_iter().collect();
@@ -45,19 +92,20 @@ pub(crate) fn mean(pixels: &Points, angle: f64, reach: f64, resolution: f64) -> 
     if count(&mut blocks.iter().filter(|(_, block)| is_aside(block))) < ASIDE * count(&mut blocks.iter()) {
         return None;
     }
-    let mut middle = angle;
-    for _ in 0..ROUNDS {
-        let turns = Turns::about(middle, reach, &blocks);
-        if middle == angle && !turns.are_bent() {
-            return None;
-        }
+    let mut turns = Turns::about(angle, reach, &blocks);
+    if !turns.are_bent() {
+        return None;
+    }
+    let mut mean = angle + turns.mean();
+    for _ in 1..ROUNDS {
+        turns = Turns::about(mean, reach, &blocks);
         let turn = turns.mean();
-        middle += turn;
+        mean += turn;
         if turn.abs() <= STILL_DEG.to_radians() {
             break;
         }
     }
-    Some(middle)
+    Some(Bent { mean, reach: turns.most() })
 }
 
 /// By how much blocks are turned against an angle.
@@ -96,6 +144,11 @@ impl Turns {
         let [sum, weight] =
             self.own.values().fold([0.0; 2], |[sum, all], (turn, weight)| [sum + turn * weight, all + weight]);
         if weight > 0.0 { sum / weight } else { 0.0 }
+    }
+
+    /// By how much the block is turned that is most.
+    fn most(&self) -> f64 {
+        self.own.values().map(|(turn, _)| turn.abs()).fold(0.0, f64::max)
     }
 
     /// True where blocks side by side are turned alike, and those farther apart are not.

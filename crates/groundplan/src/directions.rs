@@ -72,10 +72,13 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
             found.extend(wings);
         }
     }
+    found = bent::joined(found);
+    let diagonal = libm::hypot(frame.width as f64, frame.height as f64);
+    let mean = |f: &Candidate| f.bent.map_or(f.angle, |bent| undirected(settled(diagonal, bent.mean)));
     let sum: f64 = found.iter().map(|f| f.metres).sum();
     let total = gradients.pixels.len() as f64 * frame.resolution;
     Directions {
-        angles: found.iter().map(|f| tidy_angle(frame.angle_to_map(f.mean))).collect(),
+        angles: found.iter().map(|f| tidy_angle(frame.angle_to_map(mean(f)))).collect(),
         weights: found.iter().map(|f| if strongest > 0.0 { tidy(f.metres / strongest) } else { 0.0 }).collect(),
         histogram,
         explained: if total > 0.0 { tidy((sum / total).min(1.0)) } else { 0.0 },
@@ -95,7 +98,7 @@ fn measure(
         if found.iter().all(|other| angle_between(other.angle, angle) > SAME_DIRECTION) {
             let lines = aligned(frame, rest, angle, threads);
             take(rest, angle, &lines, parameters);
-            found.push(Candidate { angle, mean: angle, metres: lines.metres, quiet: NONE_QUIET });
+            found.push(Candidate { angle, bent: None, metres: lines.metres, quiet: NONE_QUIET });
         }
     }
     found
@@ -149,12 +152,11 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
                 continue;
             }
             let quiet = if metres >= useful { quiet(frame, rest, angle, metres, threads) } else { NONE_QUIET };
-            let mean = bent::mean(&rest.along(angle, tolerance), angle, separation, frame.resolution);
-            let mean = mean.map_or(angle, |mean| undirected(settled(diagonal, mean)));
+            let bent = bent::find(&rest.along(angle, tolerance), angle, separation, frame.resolution);
             strongest = strongest.max(metres);
             take(rest, angle, &lines, parameters);
             found.retain(|other| is_far(other, angle, separation));
-            found.push(Candidate { angle, mean, metres, quiet });
+            found.push(Candidate { angle, bent, metres, quiet });
             candidates = self::candidates(rest.histogram());
         }
     }
