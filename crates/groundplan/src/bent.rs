@@ -11,16 +11,17 @@ use std::f64::consts::FRAC_PI_2;
 /// Blocks are squares of so many metres, or so many of them along the longer side of all pixels.
 const BLOCK: f64 = 8.0;
 const BLOCKS: f64 = 8.0;
-/// So many pixels are asked, and so many of a block at least.
-const SAMPLE: usize = 8192;
-const FEWEST: usize = 30;
+/// So many pixels are asked, of a block at least so many, and before that fewer.
+const FIRST_SAMPLE: usize = 1024;
+const SAMPLE: usize = 4096;
+const FEWEST: usize = 25;
 /// Blocks that so much beside the angle are sharper than there, degrees, have this share of all pixels where a map is bent.
 const ASIDE_DEG: f64 = 0.4;
-const ASIDE: f64 = 0.25;
+const ASIDE: f64 = 0.33;
 /// The angles that a block is asked at, degrees.
-const STEP_DEG: f64 = 0.25;
+const STEP_DEG: f64 = 0.5;
 /// Angles of blocks side by side differ by this share of what those of any two do, or it is noise. Of so many pairs.
-const ALIKE: f64 = 0.4;
+const ALIKE: f64 = 0.65;
 const PAIRS: usize = 6;
 /// Each at its own angle the blocks stand out of what lies at any by this share more than all at one.
 const GAIN: f64 = 0.08;
@@ -73,27 +74,19 @@ fn join(found: &mut Vec<Candidate>, angle: f64, within: f64, first: Option<usize
 }
 
 /// A block's place in columns and rows of blocks, and its pixels.
-type Block = ([i32; 2], Points);
+type Block = ([usize; 2], Points);
 
 /// The mean angle of what lies within `reach` of the sharpest one, radians, where that differs from block to block as on a
-/// bent map: by little from one to the next, by more across the map. Else nothing.
-pub(crate) fn find(pixels: &Points, angle: f64, reach: f64, resolution: f64) -> Option<Bent> {
-    let pixels = sample(pixels, SAMPLE);
+/// bent map: by little from one to the next, by more across the map. Else nothing. Of a map that is known to be bent it is enough
+/// that each block is sharper at its own angle.
+pub(crate) fn find(pixels: &Points, angle: f64, reach: f64, resolution: f64, is_known: bool) -> Option<Bent> {
     let side = (BLOCK / resolution).max(pixels.extent() / BLOCKS);
-    let mut blocks: Vec<Block> = pixels.blocks(side).into_iter().collect();
-    blocks.retain(|(_, block)| block.len() >= FEWEST);
-    let is_aside = |block: &Points| {
-        let mut own = Sharpness::new(block, 1);
-        let [here, aside] = [0.0, ASIDE_DEG.to_radians()]
-            .map(|turn| [angle - turn, angle + turn].map(|angle| own.finely_at(angle)).into_iter().fold(0.0, f64::max));
-        aside > here
-    };
-    let count = |blocks: &mut dyn Iterator<Item = &Block>| blocks.map(|(_, block)| block.len()).sum::<usize>() as f64;
-    if count(&mut blocks.iter().filter(|(_, block)| is_aside(block))) < ASIDE * count(&mut blocks.iter()) {
+    if !are_aside(&sample(pixels, FIRST_SAMPLE), angle, side) {
         return None;
     }
+    let blocks: Vec<Block> = sample(pixels, SAMPLE).blocks(side).filter(|(_, block)| block.len() >= FEWEST).collect();
     let mut turns = Turns::about(angle, reach, &blocks);
-    if !turns.are_bent() {
+    if !turns.are_sharper() || !is_known && !turns.are_alike() {
         return None;
     }
     let mut mean = angle + turns.mean();
@@ -108,10 +101,22 @@ pub(crate) fn find(pixels: &Points, angle: f64, reach: f64, resolution: f64) -> 
     Some(Bent { mean, reach: turns.most() })
 }
 
+/// True when many of some pixels are in blocks that are sharper a little beside an angle than there.
+fn are_aside(pixels: &Points, angle: f64, side: f64) -> bool {
+    let aside = ASIDE_DEG.to_radians();
+    let is_aside = |block: &Points| {
+        let mut own = Sharpness::new(block, 1);
+        let here = own.roughly_at(angle);
+        [angle - aside, angle + aside].into_iter().any(|angle| own.roughly_at(angle) > here)
+    };
+    let count: usize = pixels.blocks(side).filter(|(_, block)| is_aside(block)).map(|(_, block)| block.len()).sum();
+    count as f64 >= ASIDE * pixels.len() as f64
+}
+
 /// By how much blocks are turned against an angle.
 struct Turns {
     /// By place: the turn, and how far the block stands out there of what it is at any angle.
-    own: BTreeMap<[i32; 2], (f64, f64)>,
+    own: BTreeMap<[usize; 2], (f64, f64)>,
     /// How far all stand out, each at its own angle, and all at the one.
     out: [f64; 2],
 }
@@ -126,13 +131,14 @@ impl Turns {
             let values: Vec<f64> = (-steps..=steps).map(|n| sharpness.finely_at(angle + f64::from(n) * step)).collect();
             let best = (0..values.len()).max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0);
             // What goes on beyond lies along another direction.
-            let Some(&[left, top, right]) = values.get(best.wrapping_sub(1)..best + 2).and_then(|v| v.first_chunk())
-            else {
+            if best == 0 || best + 1 == values.len() {
                 continue;
-            };
-            let mut ranked = values.clone();
-            let usual = *ranked.select_nth_unstable_by(values.len() / 2, f64::total_cmp).1;
-            let turn = (best as f64 - f64::from(steps) + parabola(left, top, right)) * step;
+            }
+            let top = values[best];
+            let usual = *values.clone().select_nth_unstable_by(values.len() / 2, f64::total_cmp).1;
+            let turn = (best as f64 - f64::from(steps)) * step;
+            let [left, middle, right] = [-0.5, 0.0, 0.5].map(|part| sharpness.finely_at(angle + turn + part * step));
+            let turn = turn + parabola(left, middle, right) * step / 2.0;
             own.insert(*place, (turn, top - usual));
             out[0] += top - usual;
             out[1] += values[steps as usize] - usual;
@@ -151,15 +157,20 @@ impl Turns {
         self.own.values().map(|(turn, _)| turn.abs()).fold(0.0, f64::max)
     }
 
+    /// True where each block stands out more at its own angle than all at one.
+    fn are_sharper(&self) -> bool {
+        self.out[0] >= (1.0 + GAIN) * self.out[1]
+    }
+
     /// True where blocks side by side are turned alike, and those farther apart are not.
-    fn are_bent(&self) -> bool {
+    fn are_alike(&self) -> bool {
         let mean = self.mean();
         let (mut spread, mut all) = (0.0, 0.0);
         let (mut beside, mut both, mut pairs) = (0.0, 0.0, 0);
         for ([x, y], (turn, weight)) in &self.own {
             spread += weight * (turn - mean).powi(2);
             all += weight;
-            for next in [[x + 1, *y], [*x, y + 1], [x + 1, y + 1], [x + 1, y - 1]] {
+            for next in [[x + 1, *y], [*x, y + 1], [x + 1, y + 1], [x + 1, y.wrapping_sub(1)]] {
                 if let Some((other, its)) = self.own.get(&next) {
                     beside += weight.min(*its) * (turn - other).powi(2);
                     both += weight.min(*its);
@@ -168,7 +179,6 @@ impl Turns {
             }
         }
         // Of two that have nothing to do with one another the difference has twice the spread.
-        let are_alike = pairs >= PAIRS && beside * all <= ALIKE * 2.0 * spread * both;
-        are_alike && self.out[0] >= (1.0 + GAIN) * self.out[1]
+        pairs >= PAIRS && beside * all <= ALIKE * 2.0 * spread * both
     }
 }

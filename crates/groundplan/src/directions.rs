@@ -152,7 +152,10 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
                 continue;
             }
             let quiet = if metres >= useful { quiet(frame, rest, angle, metres, threads) } else { NONE_QUIET };
-            let bent = bent::find(&rest.along(angle, tolerance), angle, separation, frame.resolution);
+            // What the strongest shows of the map counts for the others.
+            let is_known = found.first().is_some_and(|first| first.bent.is_some());
+            let bent = || bent::find(&rest.along(angle, tolerance), angle, separation, frame.resolution, is_known);
+            let bent = if found.is_empty() || is_known { bent() } else { None };
             strongest = strongest.max(metres);
             take(rest, angle, &lines, parameters);
             found.retain(|other| is_far(other, angle, separation));

@@ -2,7 +2,6 @@
 
 use crate::bands::fold;
 use crate::ends::around;
-use std::collections::BTreeMap;
 
 /// A pixel's weight, in whole parts.
 pub(crate) const FRACTIONS: u32 = 16;
@@ -87,16 +86,19 @@ impl Points {
         self.within.iter().map(|[low, high]| high - low).fold(0.0, f64::max)
     }
 
-    /// Those in each square of such a side, by its column and row.
-    pub fn blocks(&self, side: f64) -> BTreeMap<[i32; 2], Self> {
-        let mut blocks: BTreeMap<[i32; 2], [Vec<f32>; 2]> = BTreeMap::new();
+    /// Those in each square of such a side, by its column and row; none where there are none.
+    pub fn blocks(&self, side: f64) -> impl Iterator<Item = ([usize; 2], Self)> {
+        let lows = self.within.map(|[low, _]| low);
+        let [columns, rows] = self.within.map(|[low, high]| ((high - low) / side) as usize + 1);
+        let mut blocks = vec![[Vec::new(), Vec::new()]; columns * rows];
         for (&x, &y) in self.xs.iter().zip(&self.ys) {
-            let place = [x, y].map(|at| (f64::from(at) / side).floor() as i32);
-            let [xs, ys] = blocks.entry(place).or_default();
+            let [column, row] = [(x, lows[0]), (y, lows[1])].map(|(at, low)| ((f64::from(at) - low) / side) as usize);
+            let [xs, ys] = &mut blocks[row * columns + column];
             xs.push(x);
             ys.push(y);
         }
-        blocks.into_iter().map(|(place, [xs, ys])| (place, Self::new(xs, ys))).collect()
+        let some = blocks.into_iter().enumerate().filter(|(_, [xs, _])| !xs.is_empty());
+        some.map(move |(n, [xs, ys])| ([n % columns, n / columns], Self::new(xs, ys)))
     }
 
     /// Across `angle`, with so many bins to the pixel, and `margin` of them free at both ends.

@@ -29,7 +29,7 @@ impl<'a> Sharpness<'a> {
     }
 
     /// Of few bins and smoothed little: a few short lines show among much else.
-    fn roughly_at(&mut self, angle: f64) -> f64 {
+    pub fn roughly_at(&mut self, angle: f64) -> f64 {
         self.over::<2, 2>(angle, squares)
     }
 
