@@ -234,6 +234,40 @@ def test_directions_that_are_given_nearer_than_two_may_be_found_are_kept_and_tol
     assert "near-directions" in {warning.code for warning in wider.warnings}
 
 
+def bent_hall(heading: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]]) -> npt.NDArray[np.uint8]:
+    """A hall of 64 by 26 m with four rows of racks, all along a heading, degrees, that depends on the place along."""
+    x = np.arange(0, 64, RESOLUTION)
+    along = np.tan(np.radians(heading(x)))
+    off = np.cumsum(along) * RESOLUTION
+    y = np.mgrid[-4.0:40.0:RESOLUTION][:, None] - off
+    picture = np.full(y.shape, zoo.UNKNOWN, dtype=np.uint8)
+    picture[(y > -0.15) & (y < 26.15)] = zoo.OCCUPIED
+    picture[(y > 0) & (y < 26)] = zoo.FREE
+    for low in (4.0, 9.5, 15.0, 20.5):
+        picture[(y > low) & (y < low + 1.5) & (x > 4) & (x < 60)] = zoo.OCCUPIED
+    picture[:, x < 0.15] = picture[:, x > 63.85] = zoo.OCCUPIED
+    return np.ascontiguousarray(picture[::-1])
+
+
+def nearest(picture: npt.NDArray[np.uint8], degrees: float) -> float:
+    found = groundplan.survey(picture, resolution=RESOLUTION).directions.angles
+    return float(min(np.degrees(found), key=lambda angle: abs(float(angle) - degrees)))
+
+
+def test_the_direction_of_a_bent_hall_is_the_mean_over_its_length() -> None:
+    # Straight at first, the sharpest part, and then more and more askew.
+    def heading(x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        return np.clip((x - 24) / 10, 0, 4)
+
+    rows = float(heading(np.arange(4, 60, RESOLUTION)).mean())
+    assert nearest(bent_hall(heading), 0) == pytest.approx(rows, abs=0.3)
+
+
+@pytest.mark.parametrize("askew", [0.0, 2.0, 3.0, 4.0])
+def test_a_wing_that_is_turned_by_little_does_not_turn_a_straight_hall(askew: float) -> None:
+    assert nearest(bent_hall(lambda x: np.where(x < 40, 0.0, askew)), 0) == pytest.approx(0, abs=0.1)
+
+
 def test_the_histogram_counts_every_edge_pixel_once() -> None:
     map = groundplan.from_array(ZOO["turned_warehouse"](), RESOLUTION)
     gradients = groundplan.find_gradients(map)

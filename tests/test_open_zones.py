@@ -95,6 +95,16 @@ def test_nothing_leads_on_where_the_map_ends_behind_the_last_row(behind: float) 
     assert kinds(survey) == sorted(["L", "T", "L"] * 2 + ["T", "X", "T"])
 
 
+@pytest.mark.parametrize(("behind", "leads_on"), [(0.5, True), (1.5, True), (-0.6, False)])
+def test_ways_lead_on_through_the_last_row_where_what_lies_behind_was_not_seen(behind: float, leads_on: bool) -> None:
+    picture = drawn(3, 9.0)
+    # The lowest row is the picture's last.
+    picture[: round((9.2 - behind) / RESOLUTION), round(0.3 / RESOLUTION) : -round(0.3 / RESOLUTION)] = UNKNOWN
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    way = [junction["type"] for junction in survey.of_kind("junction") if junction["at"][1] > 2 * (AISLE + DEPTH)]
+    assert ("X" in way) == leads_on
+
+
 @pytest.mark.parametrize("zone", [9.0, 11.0, 14.0])
 def test_what_is_wider_than_corridors_may_be_is_none(zone: float) -> None:
     survey = hall(3, zone)

@@ -1,7 +1,6 @@
 //! II-A: which of the angles that structure lines up along are directions of one ground plan.
 
 use crate::aligned::ALIGNED_DEG;
-use crate::bent::Bent;
 use crate::grid::angle_between;
 use crate::parameters::Parameters;
 use std::f64::consts::FRAC_PI_2;
@@ -27,8 +26,8 @@ const BENT: (f64, f64) = (2.0, 0.1);
 #[derive(Clone, Copy)]
 pub struct Candidate {
     pub angle: f64,
-    /// What lies along it where the map is bent.
-    pub bent: Option<Bent>,
+    /// The mean of what lies along it where the map is bent.
+    pub mean: Option<f64>,
     /// Metres of structure that line up along it.
     pub metres: f64,
     /// At which of the controls clearly less lines up: scattered pixels line up there as well as they do here.
@@ -36,11 +35,6 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// The mean angle of what lies along it.
-    pub fn mean(&self) -> f64 {
-        self.bent.map_or(self.angle, |bent| bent.mean)
-    }
-
     /// Clearly more lines up here than beside.
     pub fn exceeds_chance(&self) -> bool {
         self.quiet.iter().filter(|quiet| !**quiet).count() <= OTHERS_AMONG_CONTROLS
@@ -105,7 +99,7 @@ mod tests {
     use super::*;
 
     fn candidate(degrees: f64, metres: f64) -> Candidate {
-        Candidate { angle: degrees.to_radians(), bent: None, metres, quiet: [true; CONTROLS_DEG.len()] }
+        Candidate { angle: degrees.to_radians(), mean: None, metres, quiet: [true; CONTROLS_DEG.len()] }
     }
 
     #[test]

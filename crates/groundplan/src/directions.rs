@@ -72,13 +72,12 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
             found.extend(wings);
         }
     }
-    found = bent::joined(found);
     let diagonal = libm::hypot(frame.width as f64, frame.height as f64);
-    let mean = |f: &Candidate| f.bent.map_or(f.angle, |bent| undirected(settled(diagonal, bent.mean)));
+    let angle = |f: &Candidate| f.mean.map_or(f.angle, |mean| undirected(settled(diagonal, mean)));
     let sum: f64 = found.iter().map(|f| f.metres).sum();
     let total = gradients.pixels.len() as f64 * frame.resolution;
     Directions {
-        angles: found.iter().map(|f| tidy_angle(frame.angle_to_map(mean(f)))).collect(),
+        angles: found.iter().map(|f| tidy_angle(frame.angle_to_map(angle(f)))).collect(),
         weights: found.iter().map(|f| if strongest > 0.0 { tidy(f.metres / strongest) } else { 0.0 }).collect(),
         histogram,
         explained: if total > 0.0 { tidy((sum / total).min(1.0)) } else { 0.0 },
@@ -98,7 +97,7 @@ fn measure(
         if found.iter().all(|other| angle_between(other.angle, angle) > SAME_DIRECTION) {
             let lines = aligned(frame, rest, angle, threads);
             take(rest, angle, &lines, parameters);
-            found.push(Candidate { angle, bent: None, metres: lines.metres, quiet: NONE_QUIET });
+            found.push(Candidate { angle, mean: None, metres: lines.metres, quiet: NONE_QUIET });
         }
     }
     found
@@ -153,13 +152,13 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
             }
             let quiet = if metres >= useful { quiet(frame, rest, angle, metres, threads) } else { NONE_QUIET };
             // What the strongest shows of the map counts for the others.
-            let is_known = found.first().is_some_and(|first| first.bent.is_some());
-            let bent = || bent::find(&rest.along(angle, tolerance), angle, separation, frame.resolution, is_known);
-            let bent = if found.is_empty() || is_known { bent() } else { None };
+            let is_bent = found.first().is_some_and(|first| first.mean.is_some());
+            let mean = || bent::mean(&rest.along(angle, tolerance), angle, frame.resolution, is_bent);
+            let mean = if found.is_empty() || is_bent { mean() } else { None };
             strongest = strongest.max(metres);
             take(rest, angle, &lines, parameters);
             found.retain(|other| is_far(other, angle, separation));
-            found.push(Candidate { angle, bent, metres, quiet });
+            found.push(Candidate { angle, mean, metres, quiet });
             candidates = self::candidates(rest.histogram());
         }
     }

@@ -48,7 +48,7 @@ const LOST: f64 = 0.5;
 const UP_TO_WALL: f64 = 0.25;
 const NARROW: f64 = 1.2;
 /// What is smaller than this share of a rack's legs is none where one stands alone.
-const SPECK: f64 = 0.6;
+const SPECK: f64 = 0.4;
 /// A wall across a row is seen over so much of it.
 const WALL: f64 = 0.9;
 
@@ -433,8 +433,10 @@ fn is_kind(rack: &Rack, all: &[Rack]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::uprights;
     use super::*;
     use crate::grid::{Frame as MapFrame, Table};
+    use crate::pixels::Pixels;
 
     const EAST: [f64; 2] = [1.0, 0.0];
 
@@ -490,6 +492,22 @@ mod tests {
         let (_, legs) = frames(&[leg(2.0), leg(10.0)], EAST);
         let along = |wall: usize| on_map(|x, _| x == wall, EAST, |map| rack(0, &row, &legs, map)).row.along;
         assert_eq!([along(230), along(180), along(60)], [[2.0, 10.0], [2.0, 8.0], [4.0, 10.0]]);
+    }
+
+    #[test]
+    fn a_speck_at_a_racks_end_is_no_leg() {
+        // Legs of three pixels along two faces, 2 m apart, and one thing by itself a bay farther on.
+        let leg = |x: u32, y: u32, side: u32| (0..side).flat_map(move |n| (0..side).map(move |m| [x + m, y + n]));
+        let along = |side: u32| {
+            let mut pixels: Vec<[u32; 2]> =
+                [80, 120, 160].into_iter().flat_map(|x| leg(x, 60, 3).chain(leg(x, 82, 3))).collect();
+            pixels.extend(leg(200, 60, side));
+            pixels.sort_unstable_by_key(|&[x, y]| [y, x]);
+            let frame = MapFrame::new(240, 120, 0.05, [0.0; 3]);
+            let (frames, legs) = frames(&uprights::find(&frame, &Pixels::from_iter(pixels)), EAST);
+            on_map(|_, _| false, EAST, |map| rack(0, &frames, &legs, map)).row.length()
+        };
+        assert!((along(1) - 4.0).abs() < 0.01 && (along(3) - 6.0).abs() < 0.01, "{} {}", along(1), along(3));
     }
 
     #[test]

@@ -16,6 +16,8 @@ const LEFT: f64 = 0.5;
 const WIDER: f64 = 0.4;
 /// Two middles so near to each other are one, metres.
 const NEAR: f64 = 0.12;
+/// What a rack along a way takes of it counts from so far within its side on, metres.
+const TAKEN: f64 = 0.12;
 /// A rack stands across a direction when the cosine of the angle between is no more than this.
 const ASKEW: f64 = 0.05;
 
@@ -62,7 +64,7 @@ pub fn past(views: &[Turned], strips: &[Strip], racks: &[Row], reached: &[[f64; 
         let counts_from = |n: usize| {
             let racked = racks[n].direction;
             let is_across = || libm::cos(views[racked].angle - view.angle).abs() <= ASKEW;
-            if racked == view.direction { Some(NEAR) } else { is_across().then_some(SAME) }
+            if racked == view.direction { Some(TAKEN) } else { is_across().then_some(SAME) }
         };
         for (strip, reached) in past.iter_mut().zip(reached).filter(|(strip, _)| strip.direction == view.direction) {
             let near = placed.touching(strip.along, strip.across).into_iter();

@@ -1,5 +1,5 @@
-//! Ways past the ends of a place's last row: they lead on beyond the aisle along it, into what is open behind that row and no
-//! corridor.
+//! Ways past the ends of a place's last row: they lead on beyond the aisle along it, into what is open behind that row, or
+//! was not seen, and is no corridor.
 
 use super::barriers;
 use super::beside::{Beside, placed};
@@ -17,9 +17,9 @@ use crate::ends::{around, holds, overlap, shared, sorted, wider};
 const OPEN: f64 = 4.0;
 const CLUTTER: f64 = 0.05;
 const BESIDE: f64 = 1.0;
+const TAKEN: f64 = 0.3;
 /// It may be open where so much of that was not seen.
 const UNSEEN: f64 = 0.3;
-const TAKEN: f64 = 0.3;
 /// A row has an end, or a gap so wide between goods; its back lies so near to where it is seen to end, metres.
 const GAP: f64 = 1.0;
 const BACK: f64 = 0.2;
@@ -62,17 +62,17 @@ pub fn led_on(
             let Some((aisle, from)) = farthest.filter(|(m, _)| is_aisle(&strips[*m])) else { continue };
             let Some(end) = row_end(view, strip, side, from) else { continue };
             let [behind, beyond, past] = [end + sign * SAME, end + sign * OPEN, from + sign * (DEPTH.1 + BEHIND)];
-            // Nothing is known beyond the map.
             let is_before_floor = || {
-                holds([view.along(0), view.along(view.size[0])], beyond)
-                    && is_open(view, strip, sorted([from - sign * SAME, beyond]))
+                is_open(view, strip, sorted([from - sign * SAME, beyond]))
                     && is_row(view, strip, reached_by(views, strip, &strips[aisle]), end, [behind, beyond])
             };
             let is_before_unseen = || {
                 is_open(view, strip, sorted([from - sign * SAME, behind]))
                     && is_unseen(view, strip, sorted([behind, beyond]))
             };
-            let leads_on = (is_before_floor() || is_before_unseen())
+            // Nothing is known beyond the map.
+            let leads_on = holds([view.along(0), view.along(view.size[0])], beyond)
+                && (is_before_floor() || is_before_unseen())
                 && !is_crossed(views, strip, sorted([from + sign * SAME, past]), strips, &ways);
             if leads_on {
                 // A junction's arm is no shorter.
@@ -113,17 +113,21 @@ fn row_end(view: &Turned, strip: &Strip, side: usize, from: f64) -> Option<f64> 
 /// True when nothing bars a strip between two places.
 fn is_open(view: &Turned, strip: &Strip, along: [f64; 2]) -> bool {
     let columns = view.columns(along);
-    // Its sides may lie within what stands there.
-    let [low, high] = wider(strip.across, -SAME.min(strip.width() / 4.0));
+    let [low, high] = inner(strip);
     view.mean_blocked(columns.clone(), low, high) <= CLUTTER
         && !barriers::among(view, strip.across, columns.clone()).any()
         && barriers::stops(view, strip.across, columns).is_empty()
 }
 
+/// What of a strip certainly lies between what stands at its sides.
+fn inner(strip: &Strip) -> [f64; 2] {
+    wider(strip.across, -SAME.min(strip.width() / 4.0))
+}
+
 /// True when much of a strip between two places was not seen, and nothing of what was stands there.
 fn is_unseen(view: &Turned, strip: &Strip, along: [f64; 2]) -> bool {
     let columns = view.columns(along);
-    let [low, high] = wider(strip.across, -SAME.min(strip.width() / 4.0));
+    let [low, high] = inner(strip);
     let taken = view.some_occupied(columns.clone(), low, high);
     view.mean_blocked(columns, low, high) >= UNSEEN && taken.iter().sum::<f64>() <= CLUTTER * taken.len() as f64
 }
