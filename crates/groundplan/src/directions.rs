@@ -73,7 +73,12 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
         }
     }
     let diagonal = libm::hypot(frame.width as f64, frame.height as f64);
-    let angle = |f: &Candidate| f.mean.map_or(f.angle, |mean| undirected(settled(diagonal, mean)));
+    // What has a direction of its own so near to another is a wing, and no part of a bent hall.
+    let apart = 2.0 * parameters.directions_separation_deg.to_radians();
+    let is_near = |(n, f): (usize, &Candidate)| found[..n].iter().any(|g| angle_between(f.angle, g.angle) < apart);
+    let has_wing = found.iter().enumerate().any(is_near);
+    let mean = |f: &Candidate| f.mean.filter(|_| !has_wing);
+    let angle = |f: &Candidate| mean(f).map_or(f.angle, |mean| undirected(settled(diagonal, mean)));
     let sum: f64 = found.iter().map(|f| f.metres).sum();
     let total = gradients.pixels.len() as f64 * frame.resolution;
     Directions {
