@@ -16,7 +16,7 @@ const MANY: f64 = 1.25;
 const OF_ALL: f64 = 2.0;
 /// Bays recur by so much less than a gap is wide, metres, where goods stand back from it, to so much more, where posts stand
 /// between them, tried in such steps.
-const RECUR: (f64, f64) = (-0.35, 0.3);
+const RECUR: (f64, f64) = (-0.45, 0.3);
 const STEP: f64 = 0.01;
 /// What stands between gaps is known to so much, metres.
 const OFF: f64 = 0.2;
