@@ -77,7 +77,7 @@ pub fn find(scene: &Scene, uprights: &[Upright]) -> Vec<Rack> {
         let (frames, legs) = frames(uprights, heading);
         let map = Map { grid, heading };
         let rows = in_rows(&frames, &legs, &map);
-        let mut found: Vec<Rack> = rows.iter().map(|row| rack(direction, row, &legs, &map)).collect();
+        let mut found: Vec<Rack> = rows.iter().map(|(pitch, row)| rack(direction, row, *pitch, &legs, &map)).collect();
         found.retain(|rack| blocks::is_oblong(&rack.row) && map.shows_floor(&rack.row));
         let mut found = back_to_back(found);
         found.retain(|rack| !map.goes_on(rack));
@@ -153,8 +153,8 @@ impl Pitches {
     }
 }
 
-/// Frames that follow one another at one pitch.
-fn in_rows(frames: &[Frame], legs: &Legs, map: &Map) -> Vec<Vec<Frame>> {
+/// Frames that follow one another at one pitch, and that.
+fn in_rows(frames: &[Frame], legs: &Legs, map: &Map) -> Vec<(f64, Vec<Frame>)> {
     // By strips as wide as legs may be off.
     let strip = |frame: &Frame| (frame.faces[0] / NEAR).floor() as i64;
     let mut strips: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
@@ -185,15 +185,16 @@ fn in_rows(frames: &[Frame], legs: &Legs, map: &Map) -> Vec<Vec<Frame>> {
     rows
 }
 
-/// From frame to frame, as it is where none is missing.
-fn gap(row: &[Frame]) -> Option<f64> {
+/// From frame to frame of a row, as it is where none is missing; nothing where that is no rack's.
+fn pitch_of(row: &[Frame]) -> Option<f64> {
     let mut gaps: Vec<f64> = row.windows(2).map(|pair| pair[1].at - pair[0].at).collect();
     gaps.sort_by(f64::total_cmp);
-    gaps.get(gaps.len() / QUARTER).copied()
+    let least = PITCH[0].max(OBLONG * row[0].depth());
+    gaps.get(gaps.len() / QUARTER).copied().filter(|pitch| (least..=PITCH[1]).contains(pitch))
 }
 
-/// The pieces of a row of frames whose gaps are alike, but for frames of which one leg was not seen.
-fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs, map: &Map) -> Vec<Vec<Frame>> {
+/// The pieces of a row of frames whose gaps are alike, but for frames of which one leg was not seen, each with its pitch.
+fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs, map: &Map) -> Vec<(f64, Vec<Frame>)> {
     // A plate and the legs that it joins are one frame, and so is what a map shows twice.
     row.dedup_by(|next, frame| {
         let is_same = next.at - frame.at <= LEG;
@@ -206,29 +207,26 @@ fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs, map: &Map) -> Vec<Vec<Frame>> 
     let mut found = Vec::new();
     let mut left = vec![&row[..]];
     while let Some(some) = left.pop() {
-        let pieces = pieces(some, legs, map);
+        let Some(pitch) = pitch_of(some) else { continue };
+        let pieces = pieces(some, pitch, legs, map);
         let mut first = 0;
         for others in pieces.chunk_by(|a, b| a.len() < FRAMES && b.len() < FRAMES) {
             let frames = &some[first..first + others.iter().map(|piece| piece.len()).sum::<usize>()];
             first += frames.len();
             // Of another rack in line bays may be longer.
             match others {
-                [piece] if piece.len() >= FRAMES => found.push(piece.to_vec()),
+                [piece] if piece.len() >= FRAMES => found.push((pitch, piece.to_vec())),
                 _ if frames.len() < some.len() => left.push(frames),
                 _ => {}
             }
         }
     }
-    found.sort_by(|a: &Vec<Frame>, b| a[0].at.total_cmp(&b[0].at));
+    found.sort_by(|a: &(f64, Vec<Frame>), b| a.1[0].at.total_cmp(&b.1[0].at));
     found
 }
 
-/// A row of frames, parted where one does not follow another at the pitch of most; nothing where that is no rack's.
-fn pieces<'a>(row: &'a [Frame], legs: &Legs, map: &Map) -> Vec<&'a [Frame]> {
-    let Some(pitch) = gap(row).filter(|pitch| (PITCH[0].max(OBLONG * row[0].depth())..=PITCH[1]).contains(pitch))
-    else {
-        return Vec::new();
-    };
+/// A row of frames, parted where one does not follow another at a pitch.
+fn pieces<'a>(row: &'a [Frame], pitch: f64, legs: &Legs, map: &Map) -> Vec<&'a [Frame]> {
     // Of racks that plates close two face each other across a way, be it as wide as a bay.
     let are_ends = 2 * row.iter().filter(|frame| frame.is_plate).count() <= row.len();
     let is_next = |a: &Frame, b: &Frame| {
@@ -248,11 +246,11 @@ fn pieces<'a>(row: &'a [Frame], legs: &Legs, map: &Map) -> Vec<&'a [Frame]> {
     row.chunk_by(is_next).collect()
 }
 
-/// The rack of some frames, with those at its ends of which one leg was not seen, unless a wall parts them from it: specks
+/// The rack of some frames at about a pitch, with those at its ends of which one leg was not seen, unless a wall parts them from it: specks
 /// lie behind that, and elsewhere a few that are smaller than legs.
-fn rack(direction: usize, row: &[Frame], legs: &Legs, map: &Map) -> Rack {
+fn rack(direction: usize, row: &[Frame], pitch: f64, legs: &Legs, map: &Map) -> Rack {
     let [first, last] = [row[0].at, row[row.len() - 1].at];
-    let bays = gap(row).map_or(1.0, |gap| ((last - first) / gap).round().max(1.0));
+    let bays = ((last - first) / pitch).round().max(1.0);
     let pitch = (last - first) / bays;
     let mean = |face: usize| row.iter().map(|frame| frame.faces[face]).sum::<f64>() / row.len() as f64;
     let across = [mean(0), mean(1)];
@@ -461,7 +459,7 @@ mod tests {
             EAST,
             |map| {
                 let rows = at_one_pitch(places.map(frame).to_vec(), &legs, map);
-                let rack = rack(0, &rows[0], &legs, map);
+                let rack = rack(0, &rows[0].1, rows[0].0, &legs, map);
                 (rows.len(), rack)
             },
         );
@@ -490,7 +488,7 @@ mod tests {
         let leg = |u: f64| Upright::point([u, 3.0]);
         let row = [4.0, 6.0, 8.0].map(|at| Frame { at, faces: [3.0, 4.1], is_plate: false });
         let (_, legs) = frames(&[leg(2.0), leg(10.0)], EAST);
-        let along = |wall: usize| on_map(|x, _| x == wall, EAST, |map| rack(0, &row, &legs, map)).row.along;
+        let along = |wall: usize| on_map(|x, _| x == wall, EAST, |map| rack(0, &row, 2.0, &legs, map)).row.along;
         assert_eq!([along(230), along(180), along(60)], [[2.0, 10.0], [2.0, 8.0], [4.0, 10.0]]);
     }
 
@@ -505,7 +503,7 @@ mod tests {
             pixels.sort_unstable_by_key(|&[x, y]| [y, x]);
             let frame = MapFrame::new(240, 120, 0.05, [0.0; 3]);
             let (frames, legs) = frames(&uprights::find(&frame, &Pixels::from_iter(pixels)), EAST);
-            on_map(|_, _| false, EAST, |map| rack(0, &frames, &legs, map)).row.length()
+            on_map(|_, _| false, EAST, |map| rack(0, &frames, 2.0, &legs, map)).row.length()
         };
         assert!((along(1) - 4.0).abs() < 0.01 && (along(3) - 6.0).abs() < 0.01, "{} {}", along(1), along(3));
     }
