@@ -186,7 +186,10 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
             let is_beside = |m: usize| {
                 let [low, high] = shared(strips[n].across, strips[m].across);
-                strips[m].direction == other.direction && low - high < SHORTEST && passing[m].holds_more_than(own)
+                let is_parted = own.is_within && own.rows.iter().all(|row| passing[m].rows.contains(row));
+                strips[m].direction == other.direction
+                    && low - high < SHORTEST
+                    && (passing[m].holds_more_than(own) || m != n && is_parted)
             };
             let near =
                 || placed[other.direction].touching(strips[n].along, wider(strips[n].across, SHORTEST)).into_iter();
