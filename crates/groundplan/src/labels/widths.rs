@@ -113,10 +113,24 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
         let mut told = vec![(Widths::default(), false); parts.len()];
         for (n, own) in passing.iter().enumerate().filter(|(_, own)| own.is_whole()) {
             for part in own.rows.iter().map(|&row| parts[row]).collect::<BTreeSet<_>>() {
-                told[part].0.add(strips[n].width());
-                told[part].1 |= own.is_within;
+                let (widths, is_within) = &mut told[part];
+                if own.is_within && !*is_within {
+                    *widths = Widths::default();
+                    *is_within = true;
+                }
+                if own.is_within || !*is_within {
+                    widths.add(strips[n].width());
+                }
             }
         }
+        // Along a strip, with no rack between.
+        let beside = |n: usize| {
+            let near = placed[other.direction].touching(strips[n].along, wider(strips[n].across, SHORTEST));
+            near.into_iter().filter(move |&m| {
+                let [low, high] = shared(strips[n].across, strips[m].across);
+                m != n && strips[m].direction == other.direction && low - high < SHORTEST
+            })
+        };
         let alone = LazyCell::new(|| Alone::new(&place, strips));
         let bars = Bars::new(evidence, look, &place, strips);
         for (n, own) in passing.iter().enumerate() {
@@ -184,16 +198,17 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
                 pieces[n] = cut;
             }
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
-            let is_beside = |m: usize| {
-                let [low, high] = shared(strips[n].across, strips[m].across);
-                let is_parted = own.is_within && own.rows.iter().all(|row| passing[m].rows.contains(row));
-                strips[m].direction == other.direction
-                    && low - high < SHORTEST
-                    && (passing[m].holds_more_than(own) || m != n && is_parted)
+            let is_beside = |m: usize| passing[m].holds_more_than(own);
+            stays[n] &= !beside(n).any(is_beside);
+        }
+        // Posts alone part bays: nor does one beside another through one row, or beside what leads past the ends of its rows.
+        let left = stays.clone();
+        for (n, own) in passing.iter().enumerate().filter(|(_, own)| own.is_within && !own.is_led_on) {
+            let is_parted = |m: usize| {
+                let is_through = |row: &usize| passing[m].rows.contains(row);
+                left[m] && own.rows.iter().all(is_through) && (own.racks == 1 || !passing[m].is_within)
             };
-            let near =
-                || placed[other.direction].touching(strips[n].along, wider(strips[n].across, SHORTEST)).into_iter();
-            stays[n] &= !near().any(is_beside);
+            stays[n] &= !beside(n).any(is_parted);
         }
     }
     pieces.into_iter().zip(stays).filter(|(_, stays)| *stays).flat_map(|(pieces, _)| pieces).collect()
