@@ -35,7 +35,10 @@ const THIN: i64 = 2;
 
 /// True when a corridor goes on beyond a junction by so much that it leads on.
 pub fn goes_on(view: &Turned, strip: &Strip, side: usize, beyond: f64) -> bool {
-    beyond >= ARM.0 && (beyond >= ARM.1 * strip.width() || closed(view, strip, side, LOOK).is_none())
+    let least = ARM.1 * strip.width();
+    let is_long =
+        || closed(view, strip, side, LOOK).is_none_or(|wall| beyond + (wall - strip.along[side]) * sign(side) >= least);
+    beyond >= ARM.0 && (beyond >= least || is_long())
 }
 
 /// True when a wall closes a strip at one of its ends, be there a door in it.
