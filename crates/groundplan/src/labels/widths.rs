@@ -9,7 +9,7 @@ use super::corridors::Strip;
 use super::empties;
 use super::look::Look;
 use super::passing::{Passing, Place};
-use super::rows::SHORTEST;
+use super::rows::{DEPTH, SHORTEST};
 use super::sections::{BAY, WIDTH, is_as_bays};
 use super::seldom;
 use super::turned::Turned;
@@ -123,12 +123,12 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
                 }
             }
         }
-        // Along a strip, with no rack between.
-        let beside = |n: usize| {
-            let near = placed[other.direction].touching(strips[n].along, wider(strips[n].across, SHORTEST));
+        // Along a strip, so near across.
+        let beside = |n: usize, apart: f64| {
+            let near = placed[other.direction].touching(strips[n].along, wider(strips[n].across, apart));
             near.into_iter().filter(move |&m| {
                 let [low, high] = shared(strips[n].across, strips[m].across);
-                m != n && strips[m].direction == other.direction && low - high < SHORTEST
+                m != n && strips[m].direction == other.direction && low - high < apart
             })
         };
         let alone = LazyCell::new(|| Alone::new(&place, strips));
@@ -199,7 +199,7 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             }
             // With no rack between it and a way through more rows it leads through their last bays, which are empty.
             let is_beside = |m: usize| passing[m].holds_more_than(own);
-            stays[n] &= !beside(n).any(is_beside);
+            stays[n] &= !beside(n, SHORTEST).any(is_beside);
         }
         // Posts alone part bays: nor does one beside another through one row, or beside what leads past the ends of its rows.
         let left = stays.clone();
@@ -208,7 +208,7 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
                 let is_through = |row: &usize| passing[m].rows.contains(row);
                 left[m] && own.rows.iter().all(is_through) && (own.racks == 1 || !passing[m].is_within)
             };
-            stays[n] &= !beside(n).any(is_parted);
+            stays[n] &= !beside(n, DEPTH.0).any(is_parted);
         }
     }
     pieces.into_iter().zip(stays).filter(|(_, stays)| *stays).flat_map(|(pieces, _)| pieces).collect()
