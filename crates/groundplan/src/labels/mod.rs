@@ -2,6 +2,7 @@
 
 mod across;
 mod alone;
+mod askew;
 mod at_walls;
 mod barriers;
 mod bars;
