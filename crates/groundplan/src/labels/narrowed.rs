@@ -89,7 +89,7 @@ pub fn past(views: &[Turned], strips: &[Strip], racks: &[Row], reached: &[[f64; 
 fn between(strip: &Strip, racks: impl Iterator<Item = ([[f64; 2]; 2], f64)>) -> [f64; 2] {
     let mut left = strip.across;
     // At its ends it goes past what stands along the ways that it meets.
-    let stretch = wider(strip.along, -strip.width());
+    let stretch = wider(strip.along, -strip.width() / 2.0);
     for ([along, across], least) in racks {
         if overlap(along, stretch) < SAME || overlap(across, strip.across) < least {
             continue;
