@@ -80,3 +80,8 @@ def test_a_gap_beside_which_no_bar_stands_is_no_way_where_bars_end_all_rows() ->
         "cross_aisle": 3.28,
     }
     assert typed(**site, staggered=8.0, cross_aisles=2, clutter=0.8) == 1
+
+
+def test_a_way_between_bars_through_several_rows_is_no_empty_bay_though_it_is_narrower() -> None:
+    site: dict[str, Any] = {"seed": 70066, "yaw": -2.8, "width": 35.16, "depth": 27.34, "aisle": 3.23}
+    assert typed(**site, cross_aisle=2.81, cross_aisles=2, sparse=0.6, halls=2) == 1

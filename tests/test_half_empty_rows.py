@@ -3,9 +3,11 @@ bars across the rows' ends tell ways from them."""
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import pytest
+from shapely import Polygon
 
 import groundplan
 from groundplan.evaluate import score
@@ -104,3 +106,12 @@ def test_bays_are_told_by_frames_that_stand_alone_where_too_few_posts_recur(name
 @pytest.mark.parametrize("name", CLOSED)
 def test_an_empty_bay_of_each_row_between_posts_is_no_way_where_the_rows_ends_are_closed(name: str) -> None:
     assert is_right(CLOSED[name])
+
+
+def test_what_posts_alone_part_from_the_way_past_the_ends_of_rows_is_their_last_bay() -> None:
+    options: dict[str, Any] = {"seed": 12561, "yaw": -53.5, "width": 26, "depth": 16, "aisle": 2.7, "cross_aisle": 3.5}
+    site = warehouse(**options, **SCANNED, bay=3.09, rack_depth=1.05, sparse=0.65, halls=2, gap=0.5)
+    ways = [Polygon(way["polygon"]) for way in groundplan.survey(site.map).of_kind("corridor")]
+    parted = [one.distance(two) for one, two in itertools.combinations(ways, 2) if not one.intersects(two)]
+    # Of two that lie side by side between the ends of both rows of the other hall one is a way, and which is not told.
+    assert [gap for gap in parted if gap < 0.5] == pytest.approx([0.3], abs=0.05)

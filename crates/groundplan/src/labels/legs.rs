@@ -468,6 +468,26 @@ mod tests {
     }
 
     #[test]
+    fn a_rack_of_few_frames_has_the_pitch_by_which_it_is_parted_from_the_next_one() {
+        // Bays of 1.8 m, and of every second frame one leg alone was seen; the next rack in line begins 3.1 m farther on.
+        let leg = |n: u32| Upright::point([1.8 * f64::from(n), 0.0]);
+        let (_, legs) = frames(&[2, 4, 6].map(leg), EAST);
+        let places = [0, 1, 3, 5, 7].map(|n| 1.8 * f64::from(n)).into_iter().chain([15.7, 17.5, 19.3, 21.1]);
+        let row: Vec<Frame> = places.map(|at| Frame { at, faces: [0.0, 1.1], is_plate: false }).collect();
+        let racks = on_map(
+            |_, _| false,
+            EAST,
+            |map| {
+                let rows = at_one_pitch(row.clone(), &legs, map);
+                rows.iter().map(|(pitch, row)| rack(0, row, *pitch, &legs, map)).collect::<Vec<_>>()
+            },
+        );
+        let found: Vec<(usize, f64)> = racks.iter().map(|rack| (rack.frames, rack.row.along[1])).collect();
+        assert_eq!(found.iter().map(|(frames, _)| *frames).collect::<Vec<_>>(), [8, 4]);
+        assert!((found[0].1 - 12.6).abs() < 1e-9 && (racks[0].pitch - 1.8).abs() < 1e-9, "{found:?}");
+    }
+
+    #[test]
     fn two_racks_back_to_back_are_of_a_kind_with_one_as_deep() {
         let rack = |low: f64, depth: f64, pitch: f64| {
             let row = Row { direction: 0, along: [0.0, 4.0 * pitch], across: [low, low + depth], between: None };
