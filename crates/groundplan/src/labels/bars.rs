@@ -16,7 +16,7 @@ use std::iter::{self, Sum};
 
 /// What is so near to a way's sides is of that, metres, and a wall so near to a row's end ends it.
 const NEAR: f64 = 0.3;
-/// What lies between bars in one row is no narrower than so many bays: posts or goods narrow an empty one.
+/// What lies between bars is no narrower than so many bays: posts or goods narrow an empty one.
 const AS_WIDE: f64 = 0.95;
 /// What shares so much of a way's width is in line with it.
 const IN_LINE: f64 = 0.5;
@@ -113,10 +113,9 @@ impl<'a> Bars<'a> {
 
     /// True when what one of the strips passes through of the rows, between their ends, lies between bars.
     pub fn are_beside(&self, n: usize) -> bool {
-        let own = &self.place.passing[n];
         let is_as_wide = |bay: f64| self.strips[n].width() >= AS_WIDE * bay;
-        (own.racks > 1 || self.place.pitch_of(own).is_none_or(is_as_wide))
-            && self.told(n, &own.rows).is_some_and(|told| told.is_way())
+        self.place.pitch_of(&self.place.passing[n]).is_none_or(is_as_wide)
+            && self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_way())
     }
 
     /// True when bars stand on both sides of one of the strips and end most rows, and beside no bay.

@@ -189,8 +189,8 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
                 (true, true) => bars.are_beside(n),
                 // What fills a rack's depth is as a bar, but of two racks back to back goods seldom line up so.
                 (false, false) => {
-                    let may_be_one = || !*is_told_within && own.rows.iter().all(is_double);
-                    view.pitch.is_some() && (own.racks > 1 || may_be_one()) && bars.are_beside(n)
+                    let may_be = || own.racks > 1 || !*is_told_within;
+                    view.pitch.is_some() && own.rows.iter().all(is_double) && may_be() && bars.are_beside(n)
                 }
             };
             let is_narrow = n >= first && width < WIDTH.0 && !own.is_whole();
