@@ -10,15 +10,12 @@ use super::seldom::{self, Rest};
 use super::shelves::Shelves;
 use super::turned::Turned;
 use super::whole;
-use crate::ends::{holds, overlap, sorted, wider};
+use crate::ends::{holds, overlap, wider};
 use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What leads through a row of two racks is no narrower than this share of the aisles beside it.
 const NARROWER: f64 = family::LED_TO;
-/// Between its faces, so far from each, metres, more than this share of what goes on is not free.
-const FACE: f64 = 0.1;
-const CLOSED: f64 = 0.95;
 
 /// The aisles along a direction that another one crosses, and the rows between them.
 pub struct Place<'a> {
@@ -103,16 +100,11 @@ impl Place<'_> {
         *self.pitches[row].get_or_init(|| self.views[0].pitch_of(&self.rows[row].0))
     }
 
-    /// True when a row goes on past both sides of a strip that would cross it, by so much, metres: where the aisles beside it
-    /// end before, nothing of it is free.
+    /// True when a row goes on past both sides of a strip that would cross it, by so much, metres.
     pub fn goes_past(&self, row: usize, strip: &Strip, by: f64) -> bool {
         let ([view, other], (row, _)) = (self.views, &self.rows[row]);
         let middle = f64::midpoint(row.across[0], row.across[1]);
-        let sides = sorted(strip.across.map(|side| view.crossing(other, middle, side)[1]));
-        let past = wider(sides, by);
-        let [low, high] = wider(row.across, -FACE);
-        let is_closed = || view.mean_blocked(view.column(past[0])..view.column(past[1]) + 1, low, high) >= CLOSED;
-        sides.iter().all(|&side| holds(wider(row.along, -by), side)) || is_closed()
+        strip.across.iter().all(|&side| holds(wider(row.along, -by), view.crossing(other, middle, side)[1]))
     }
 
     /// The first row that something passes through, but for walls between halls.
