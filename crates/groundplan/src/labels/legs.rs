@@ -215,7 +215,7 @@ fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs, map: &Map) -> Vec<(f64, Vec<Fr
             first += frames.len();
             // Of another rack in line bays may be longer.
             match others {
-                [piece] if piece.len() >= FRAMES => found.push((pitch, piece.to_vec())),
+                [piece] if piece.len() >= FRAMES => found.push((own_pitch(piece).unwrap_or(pitch), piece.to_vec())),
                 _ if frames.len() < some.len() => left.push(frames),
                 _ => {}
             }
@@ -223,6 +223,15 @@ fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs, map: &Map) -> Vec<(f64, Vec<Fr
     }
     found.sort_by(|a: &(f64, Vec<Frame>), b| a.1[0].at.total_cmp(&b.1[0].at));
     found
+}
+
+/// The pitch of a piece of a row by itself, if all its frames are whole numbers of that apart: where few were seen it is another.
+fn own_pitch(piece: &[Frame]) -> Option<f64> {
+    let is_whole = |pitch: &f64| {
+        let off = |gap: f64| gap - (gap / pitch).round().max(1.0) * pitch;
+        piece.windows(2).all(|pair| off(pair[1].at - pair[0].at).abs() <= NEAR)
+    };
+    pitch_of(piece).filter(is_whole)
 }
 
 /// A row of frames, parted where one does not follow another at a pitch.
@@ -246,8 +255,8 @@ fn pieces<'a>(row: &'a [Frame], pitch: f64, legs: &Legs, map: &Map) -> Vec<&'a [
     row.chunk_by(is_next).collect()
 }
 
-/// The rack of some frames at about a pitch, with those at its ends of which one leg was not seen, unless a wall parts them from it: specks
-/// lie behind that, and elsewhere a few that are smaller than legs.
+/// The rack of some frames at about a pitch, with those at its ends of which one leg was not seen, unless a wall parts them from
+/// it: specks lie behind that, and elsewhere a few that are smaller than legs.
 fn rack(direction: usize, row: &[Frame], pitch: f64, legs: &Legs, map: &Map) -> Rack {
     let [first, last] = [row[0].at, row[row.len() - 1].at];
     let bays = ((last - first) / pitch).round().max(1.0);
@@ -485,6 +494,17 @@ mod tests {
         let found: Vec<(usize, f64)> = racks.iter().map(|rack| (rack.frames, rack.row.along[1])).collect();
         assert_eq!(found.iter().map(|(frames, _)| *frames).collect::<Vec<_>>(), [8, 4]);
         assert!((found[0].1 - 12.6).abs() < 1e-9 && (racks[0].pitch - 1.8).abs() < 1e-9, "{found:?}");
+    }
+
+    #[test]
+    fn of_two_racks_in_line_each_has_its_own_pitch_though_they_are_nearly_alike() {
+        let (_, legs) = frames(&[], EAST);
+        let places = (0..7).map(|n| 2.7 * f64::from(n)).chain((0..16).map(|n| 19.7 + 2.8 * f64::from(n)));
+        let row: Vec<Frame> = places.map(|at| Frame { at, faces: [0.0, 1.1], is_plate: false }).collect();
+        let rows = on_map(|_, _| false, EAST, |map| at_one_pitch(row.clone(), &legs, map));
+        let found: Vec<(usize, i64)> =
+            rows.iter().map(|(pitch, row)| (row.len(), (pitch * 100.0).round() as i64)).collect();
+        assert_eq!(found, [(7, 270), (16, 280)]);
     }
 
     #[test]

@@ -2,7 +2,6 @@
 
 mod across;
 mod alone;
-mod askew;
 mod at_walls;
 mod barriers;
 mod bars;

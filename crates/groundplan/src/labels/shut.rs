@@ -12,6 +12,8 @@ use std::ops::Range;
 /// A corridor goes on beyond a junction when it does so for this long, metres, and where a wall ends it, for this share
 /// of its width: less is what is left of it at a corner.
 pub const ARM: (f64, f64) = (1.6, 0.65);
+/// A side goes on to a wall where over this share of the way something stands on it.
+const SIDED: f64 = 0.7;
 /// What stands within this share of its width of a corridor's sides does not close it.
 const MARGIN: f64 = 0.2;
 /// A corridor's end is looked for so far beyond its walls, metres.
@@ -33,12 +35,16 @@ const FLOOR: f64 = 0.5;
 /// A thin wall stands in so many columns at most, where a border of cells parts it.
 const THIN: i64 = 2;
 
-/// True when a corridor goes on beyond a junction by so much that it leads on.
+/// True when a corridor goes on beyond a junction by so much that it leads on: as far as its sides were seen, or to the wall that
+/// ends it where one of them goes on to that.
 pub fn goes_on(view: &Turned, strip: &Strip, side: usize, beyond: f64) -> bool {
     let least = ARM.1 * strip.width();
-    let is_long =
-        || closed(view, strip, side, LOOK).is_none_or(|wall| beyond + (wall - strip.along[side]) * sign(side) >= least);
-    beyond >= ARM.0 && (beyond >= least || is_long())
+    let reaches = |wall: f64| {
+        let columns = view.columns(sorted([strip.along[side], wall]));
+        let is_sided = |at: f64| view.share_touched(columns.clone(), at - CORNER, at + CORNER) >= SIDED;
+        beyond + (wall - strip.along[side]) * sign(side) >= least && strip.across.into_iter().any(is_sided)
+    };
+    beyond >= ARM.0 && (beyond >= least || closed(view, strip, side, LOOK).is_none_or(reaches))
 }
 
 /// True when a wall closes a strip at one of its ends, be there a door in it.

@@ -1,7 +1,6 @@
 //! II-E before the map is divided into faces: corridors first, junctions where they meet, rows between them, and all
 //! that may be a door.
 
-use super::askew;
 use super::bends;
 use super::beside::placed;
 use super::blocks::Standing;
@@ -225,8 +224,7 @@ impl Plan {
         let is_on =
             |way: &Strip| beyond[way.direction].touching(way.along, way.across).into_iter().any(|n| on[n] == *way);
         found.retain(|way| !is_on(way));
-        let found = askew::without(views, crossed::without_bays(evidence, look, views, found));
-        let found = rows::without_lanes(views, found);
+        let found = rows::without_lanes(views, crossed::without_bays(evidence, look, views, found));
         let found = pillared::widened(views, &slots::without(views, found), evidence.parameters);
         let found = corridors::without_bent(views, past_goods::led_on(views, found, least));
         let threads = evidence.threads;
