@@ -7,6 +7,7 @@ use super::beside::placed;
 use super::closed;
 use super::corridors::Strip;
 use super::empties;
+use super::lags::LONGEST;
 use super::look::Look;
 use super::passing::{Passing, Place};
 use super::rows::{DEPTH, SHORTEST};
@@ -111,17 +112,10 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
         let Place { views: [view, other], passing, .. } = &place;
         // What leads through all rows of a part of the place tells of that part.
         let parts = place.parts();
-        let mut told = vec![(Widths::default(), false); parts.len()];
+        let mut told = vec![[Widths::default(), Widths::default()]; parts.len()];
         for (n, own) in passing.iter().enumerate().filter(|(_, own)| own.is_whole()) {
             for part in own.rows.iter().map(|&row| parts[row]).collect::<BTreeSet<_>>() {
-                let (widths, is_within) = &mut told[part];
-                if own.is_within && !*is_within {
-                    *widths = Widths::default();
-                    *is_within = true;
-                }
-                if own.is_within || !*is_within {
-                    widths.add(strips[n].width());
-                }
+                told[part][usize::from(own.is_within)].add(strips[n].width());
             }
         }
         // So near to a strip across, of those about where it lies along.
@@ -138,13 +132,15 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             if own.rows.is_empty() || own.rest > REST {
                 continue;
             }
-            let (known, is_told_within) = &told[parts[place.first_of(own).unwrap_or(own.rows[0])]];
+            let [past_ends, within] = &told[parts[place.first_of(own).unwrap_or(own.rows[0])]];
+            let is_told_within = !within.is_empty();
+            let known = if is_told_within { within } else { past_ends };
             let width = strips[n].width();
             let pitch = || place.pitch_of(own);
             let is_double = |&row: &usize| seldom::is_double(&place.rows[row].0);
             let may_be_bay = || pitch().is_some_and(|pitch| is_as_bays(width, pitch));
             let is_as_the_hall_leaves =
-                || leads_past_ends(&place, &strips[n], own) && !(*is_told_within && may_be_bay());
+                || leads_past_ends(&place, &strips[n], own) && !(is_told_within && may_be_bay());
             // A row beside those that end at bars, which has empty bays where they end, goes on no farther than the way.
             let goes_past = |&row: &usize| place.goes_past(row, &strips[n], FARTHER);
             let is_barred = || bars.end_rows_before(n) && own.next.iter().all(goes_past);
@@ -153,7 +149,9 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             let expected = LazyCell::new(|| empties::expected(&place, strips, n));
             let is_one_bay = || pitch().is_some_and(|pitch| width <= BAY * pitch);
             let is_anywhere = || own.is_within && is_one_bay() && expected.is_some_and(|expected| expected > ANYWHERE);
-            let is_as_wide = || known.have(width, pitch()) && !is_anywhere();
+            // Of what is longer than beams the ways past the rows' ends tell too.
+            let is_known = || known.have(width, pitch()) || width > LONGEST && past_ends.have(width, pitch());
+            let is_as_wide = || is_known() && !is_anywhere();
             let is_some = !own.next.is_empty()
                 && (!known.is_empty() || is_anywhere())
                 && !is_as_the_hall_leaves()
@@ -173,7 +171,7 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
                 own.is_within && own.racks > 1 && width >= WIDTH.0 && is_seldom()
             };
             let is_no_bay = || {
-                (!*is_told_within && (is_way_of_its_row() || place.is_open_through(strips, own, width))) || is_in_line()
+                (!is_told_within && (is_way_of_its_row() || place.is_open_through(strips, own, width))) || is_in_line()
             };
             let may_lie = || pitch().is_none() || may_be_bay();
             let is_as_bays_lie = || may_lie() && alone.is_as_bays_lie(&place, strips, own, width);
@@ -190,7 +188,7 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
                 (true, true) => bars.are_beside(n),
                 // What fills a rack's depth is as a bar, but of two racks back to back goods seldom line up so.
                 (false, false) => {
-                    let may_be = || own.racks > 1 || !*is_told_within;
+                    let may_be = || own.racks > 1 || !is_told_within;
                     view.pitch.is_some() && own.rows.iter().all(is_double) && may_be() && bars.are_beside(n)
                 }
             };
