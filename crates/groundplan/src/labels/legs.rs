@@ -225,13 +225,17 @@ fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs, map: &Map) -> Vec<(f64, Vec<Fr
     found
 }
 
-/// The pitch of a piece of a row by itself, if all its frames are whole numbers of that apart: where few were seen it is another.
+/// The pitch of a piece of a row by itself, if all its frames are whole numbers of that apart: they are not where two next to each
+/// other were seen, and most are farther apart.
 fn own_pitch(piece: &[Frame]) -> Option<f64> {
-    let is_whole = |pitch: &f64| {
-        let off = |gap: f64| gap - (gap / pitch).round().max(1.0) * pitch;
-        piece.windows(2).all(|pair| off(pair[1].at - pair[0].at).abs() <= NEAR)
-    };
-    pitch_of(piece).filter(is_whole)
+    pitch_of(piece).filter(|pitch| piece.windows(2).all(|pair| bays_between(&pair[0], &pair[1], *pitch).is_some()))
+}
+
+/// How many bays of a pitch lie from one frame to a later one, where that is a whole number.
+fn bays_between(one: &Frame, other: &Frame, pitch: f64) -> Option<usize> {
+    let gap = other.at - one.at;
+    let bays = (gap / pitch).round();
+    (bays >= 1.0 && (gap - bays * pitch).abs() <= NEAR).then_some(bays as usize)
 }
 
 /// A row of frames, parted where one does not follow another at a pitch.
@@ -242,15 +246,12 @@ fn pieces<'a>(row: &'a [Frame], pitch: f64, legs: &Legs, map: &Map) -> Vec<&'a [
         if are_ends && a.is_plate && b.is_plate {
             return false;
         }
-        let bays = ((b.at - a.at) / pitch).round();
-        let is_whole = (b.at - a.at - bays * pitch).abs() <= NEAR;
-        let place = |n: f64| a.at + (b.at - a.at) * n / bays;
+        let Some(bays) = bays_between(a, b, pitch) else { return false };
+        let place = |n: f64| a.at + (b.at - a.at) * n / bays as f64;
         let is_seen = |n: usize| legs.stand_at(place(n as f64), a.faces);
         // Between goods that hide both its frames what is free may be a way.
         let is_bay = |n: usize| is_seen(n) || is_seen(n + 1) || map.hides(place(n as f64 + 0.5), a.faces);
-        is_whole
-            && (1..bays as usize).all(|n| is_seen(n) || map.is_hidden(place(n as f64), a.faces))
-            && (1..(bays as usize).saturating_sub(1)).all(is_bay)
+        (1..bays).all(|n| is_seen(n) || map.is_hidden(place(n as f64), a.faces)) && (1..bays - 1).all(is_bay)
     };
     row.chunk_by(is_next).collect()
 }

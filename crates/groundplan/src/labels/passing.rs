@@ -65,7 +65,7 @@ impl Place<'_> {
         let Some(first) = self.first_of(own) else { return false };
         let part = self.rows_with(first);
         let rows = || part.iter().map(|&row| self.shelves(row));
-        let is_as_bays = || self.pitch_of(own).is_some_and(|pitch| is_as_bays(width, pitch));
+        let is_as_bays = || self.is_as_bays(own, width);
         let may_be_bay = || is_as_bays() || !self.lead_through_all(&part).is_empty();
         let is_full = || {
             let rest = Rest::new(self.views[0], rows(), width);
@@ -98,6 +98,12 @@ impl Place<'_> {
     pub fn pitch_of(&self, own: &Passing) -> Option<f64> {
         let row = self.first_of(own).or(own.rows.first().copied())?;
         *self.pitches[row].get_or_init(|| self.views[0].pitch_of(&self.rows[row].0))
+    }
+
+    /// True when bays are known along the rows that something passes through, and it is no wider than one, or as wide as some side
+    /// by side.
+    pub fn is_as_bays(&self, own: &Passing, width: f64) -> bool {
+        self.pitch_of(own).is_some_and(|pitch| is_as_bays(width, pitch))
     }
 
     /// True when a row goes on past both sides of a strip that would cross it, by so much, metres.
@@ -180,8 +186,8 @@ pub fn are_within(views: &[Turned], places: &[Place]) -> Vec<bool> {
 pub fn is_past_ends_as_bays(strips: &[Strip], places: &[Place], n: usize) -> bool {
     let passed: Vec<&Place> = places.iter().filter(|place| !place.passing[n].rows.is_empty()).collect();
     let is_so = |place: &&Place| {
-        let is_as_bays = |pitch| is_as_bays(strips[n].width(), pitch);
-        !place.passing[n].is_within && place.pitch_of(&place.passing[n]).is_some_and(is_as_bays)
+        let own = &place.passing[n];
+        !own.is_within && place.is_as_bays(own, strips[n].width())
     };
     !passed.is_empty() && passed.iter().all(is_so)
 }

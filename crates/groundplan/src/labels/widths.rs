@@ -99,9 +99,9 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 /// what leads through rows of which nothing else is open and lies as none can. What leads
 /// past rows' ends up to one that goes on farther is none, but where something leads through all and it is as wide as bays,
 /// nor where nothing of the rows beside reaches into it, or those before it end at bars and that one goes on past it. Nor
-/// those beside which, with no rack between, one leads through more rows, nor those as wide as bays beside which, nearer than racks
-/// are deep, one leads through the same single row or past the ends of the same rows; nor those that posts part into bays in all
-/// their rows. Bars decide where that leaves it open, and cut what leads on over bays.
+/// those beside which, with no rack between, one leads through more rows, nor those no wider than a bay, or as wide as some, beside
+/// which, nearer than racks are deep, one leads through the same single row or past the ends of the same rows; nor those that posts
+/// part into bays in all their rows. Bars decide where that leaves it open, and cut what leads on over bays.
 /// Those from `first` on are known by the rows that they lead through: narrow ones are ways where these are closed but for
 /// several.
 pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], first: usize) -> Vec<Strip> {
@@ -123,7 +123,7 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             let near = placed[other.direction].touching(strips[n].along, wider(strips[n].across, apart));
             near.into_iter().filter(move |&m| {
                 let [low, high] = shared(strips[n].across, strips[m].across);
-                m != n && strips[m].direction == other.direction && low - high < apart
+                m != n && low - high < apart
             })
         };
         let alone = LazyCell::new(|| Alone::new(&place, strips));
@@ -138,7 +138,7 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             let width = strips[n].width();
             let pitch = || place.pitch_of(own);
             let is_double = |&row: &usize| seldom::is_double(&place.rows[row].0);
-            let may_be_bay = || pitch().is_some_and(|pitch| is_as_bays(width, pitch));
+            let may_be_bay = || place.is_as_bays(own, width);
             let is_as_the_hall_leaves =
                 || leads_past_ends(&place, &strips[n], own) && !(is_told_within && may_be_bay());
             // A row beside those that end at bars, which has empty bays where they end, goes on no farther than the way.
@@ -201,15 +201,15 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             let is_beside = |m: usize| passing[m].holds_more_than(own);
             stays[n] &= !beside(n, SHORTEST).any(is_beside);
         }
-        // What is as wide as bays is one beside another through the same row, or beside what leads past the ends of its rows.
+        // What is no wider than a bay, or as wide as some, is one beside another through the same row, or beside what leads past
+        // the ends of its rows.
         let left = stays.clone();
         for (n, own) in passing.iter().enumerate().filter(|(_, own)| own.is_within && !own.is_led_on) {
             let is_parted = |m: usize| {
                 let is_through = |row: &usize| passing[m].rows.contains(row);
                 left[m] && own.rows.iter().all(is_through) && (own.racks == 1 || !passing[m].is_within)
             };
-            let may_be_bay = || place.pitch_of(own).is_some_and(|pitch| is_as_bays(strips[n].width(), pitch));
-            stays[n] &= !(beside(n, DEPTH.0).any(is_parted) && may_be_bay());
+            stays[n] &= !(place.is_as_bays(own, strips[n].width()) && beside(n, DEPTH.0).any(is_parted));
         }
     }
     pieces.into_iter().zip(stays).filter(|(_, stays)| *stays).flat_map(|(pieces, _)| pieces).collect()
