@@ -184,6 +184,21 @@ def test_racks_in_line_have_bays_of_their_own() -> None:
     assert len(survey.of_kind("corridor")) == 8 and len(survey.of_kind("junction")) == 15
 
 
+@pytest.mark.parametrize("pitch", [1.8, 2.1])
+def test_a_rack_of_which_every_second_frame_shows_one_leg_does_not_grow_over_the_way_beside_it(pitch: float) -> None:
+    def boxes() -> Iterator[Box]:
+        for y in (3.0 + 4.1 * n for n in range(4)):
+            yield from legs(4.0 + 12 * pitch, y, 10, 1.1, pitch)
+            hidden = [(4.0 + n * pitch, y + 1.0) for n in range(1, 10, 2)]
+            yield from (
+                box for box in legs(4.0, y, 10, 1.1, pitch) if not np.isclose(hidden, box[:2]).all(axis=1).any()
+            )
+
+    survey = groundplan.survey(hall(8.0 + 22 * pitch, 19.4, boxes()), resolution=RESOLUTION)
+    assert lengths(survey) == pytest.approx([10 * pitch] * 8, abs=0.3)
+    assert len(survey.of_kind("corridor")) == 8
+
+
 def test_the_legs_between_two_racks_are_no_frame_though_they_stand_as_far_apart_as_shelves_are_deep() -> None:
     boxes = (box for n in range(3) for box in double(4.0, 3.0 + 5.7 * n, 8, 2.2, (False, False), back=0.45))
     survey = groundplan.survey(hall(25.7, 20.1, boxes), resolution=RESOLUTION)

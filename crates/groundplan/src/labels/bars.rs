@@ -124,6 +124,15 @@ impl<'a> Bars<'a> {
             .is_some_and(|Told { sides, ends, bays }| sides.open + bays.closed == 0 && ends.closed > ends.open)
     }
 
+    /// True when bars end most rows, and stand at half as many sides at most of what one of the strips passes through: where another
+    /// way runs beside it, these end the rows, and it is their last bays.
+    pub fn stand_at_one_side(&self, n: usize) -> bool {
+        self.told(n, &self.place.passing[n].rows).is_some_and(|Told { sides, ends, .. }| {
+            // The sides of what leads through all rows are among the rows' ends.
+            sides.closed <= sides.open && ends.closed + sides.open > ends.open + sides.closed
+        })
+    }
+
     /// True when each of the rows whose ends one of the strips leads past ends there at a bar, as most do in that part of the
     /// place, and none stands beside a bay.
     pub fn end_rows_before(&self, n: usize) -> bool {

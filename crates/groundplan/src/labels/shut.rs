@@ -4,6 +4,7 @@ use super::barriers;
 use super::corridors::Strip;
 use super::lags::LONGEST;
 use super::panes;
+use super::racks::WAY_IN;
 use super::sided;
 use super::turned::Turned;
 use crate::ends::{sorted, wider};
@@ -36,13 +37,14 @@ const FLOOR: f64 = 0.5;
 const THIN: i64 = 2;
 
 /// True when a corridor goes on beyond a junction by so much that it leads on: as far as its sides were seen, or to the wall that
-/// ends it where one of them goes on to that.
+/// ends it where one of them goes on to that over more than a slit through which no robot comes.
 pub fn goes_on(view: &Turned, strip: &Strip, side: usize, beyond: f64) -> bool {
     let least = ARM.1 * strip.width();
     let reaches = |wall: f64| {
+        let more = (wall - strip.along[side]) * sign(side);
         let columns = view.columns(sorted([strip.along[side], wall]));
         let is_sided = |at: f64| view.share_touched(columns.clone(), at - CORNER, at + CORNER) >= SIDED;
-        beyond + (wall - strip.along[side]) * sign(side) >= least && strip.across.into_iter().any(is_sided)
+        beyond + more >= least && more > WAY_IN && strip.across.into_iter().any(is_sided)
     };
     beyond >= ARM.0 && (beyond >= least || closed(view, strip, side, LOOK).is_none_or(reaches))
 }

@@ -202,14 +202,17 @@ pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
             stays[n] &= !beside(n, SHORTEST).any(is_beside);
         }
         // What is no wider than a bay, or as wide as some, is one beside another through the same row, or beside what leads past
-        // the ends of its rows.
+        // the ends of its rows; what leads through all rows is so where bars end these and not it.
         let left = stays.clone();
+        let are_last = |n: usize| !passing[n].is_whole() || bars.stand_at_one_side(n);
         for (n, own) in passing.iter().enumerate().filter(|(_, own)| own.is_within && !own.is_led_on) {
             let is_parted = |m: usize| {
                 let is_through = |row: &usize| passing[m].rows.contains(row);
                 left[m] && own.rows.iter().all(is_through) && (own.racks == 1 || !passing[m].is_within)
             };
-            stays[n] &= !(place.is_as_bays(own, strips[n].width()) && beside(n, DEPTH.0).any(is_parted));
+            let is_bay =
+                || place.is_as_bays(own, strips[n].width()) && beside(n, DEPTH.0).any(is_parted) && are_last(n);
+            stays[n] &= !is_bay();
         }
     }
     pieces.into_iter().zip(stays).filter(|(_, stays)| *stays).flat_map(|(pieces, _)| pieces).collect()
