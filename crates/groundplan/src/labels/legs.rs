@@ -215,9 +215,7 @@ fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs, map: &Map) -> Vec<(f64, Vec<Fr
             first += frames.len();
             // Of another rack in line bays may be longer.
             match others {
-                [piece] if piece.len() >= FRAMES => {
-                    found.push((own_pitch(piece, pitch).unwrap_or(pitch), piece.to_vec()))
-                }
+                [piece] if piece.len() >= FRAMES => found.push((own_pitch(piece, pitch), piece.to_vec())),
                 _ if frames.len() < some.len() => left.push(frames),
                 _ => {}
             }
@@ -227,12 +225,12 @@ fn at_one_pitch(mut row: Vec<Frame>, legs: &Legs, map: &Map) -> Vec<(f64, Vec<Fr
     found
 }
 
-/// The pitch of a piece of a row by itself, if all its frames are whole numbers of that apart, and it is nearly the one by which they
-/// were parted from others: where no two next to each other were seen it is twice as long.
-fn own_pitch(piece: &[Frame], parted: f64) -> Option<f64> {
+/// The pitch of a piece of a row by itself, if all its frames are whole numbers of that apart and it is nearly the one by which they
+/// were parted from others, else that: where no two next to each other were seen it is twice as long.
+fn own_pitch(piece: &[Frame], parted: f64) -> f64 {
     let is_nearly = |pitch: &f64| (pitch / parted).round() as i64 == 1;
     let is_whole = |pitch: &f64| piece.windows(2).all(|pair| bays_between(&pair[0], &pair[1], *pitch).is_some());
-    pitch_of(piece).filter(is_nearly).filter(is_whole)
+    pitch_of(piece).filter(is_nearly).filter(is_whole).unwrap_or(parted)
 }
 
 /// How many bays of a pitch lie from one frame to a later one, where that is a whole number.

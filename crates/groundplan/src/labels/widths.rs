@@ -100,8 +100,9 @@ pub fn are_alike(one: f64, other: f64) -> bool {
 /// past rows' ends up to one that goes on farther is none, but where something leads through all and it is as wide as bays,
 /// nor where nothing of the rows beside reaches into it, or those before it end at bars and that one goes on past it. Nor
 /// those beside which, with no rack between, one leads through more rows, nor those no wider than a bay, or as wide as some, beside
-/// which, nearer than racks are deep, one leads through the same single row or past the ends of the same rows; nor those that posts
-/// part into bays in all their rows. Bars decide where that leaves it open, and cut what leads on over bays.
+/// which, nearer than racks are deep, one leads through the same single row or past the ends of the same rows, be these not all, or
+/// ended by bars; nor those that posts part into bays in all their rows. Bars decide where that leaves it open, and cut what leads on
+/// over bays.
 /// Those from `first` on are known by the rows that they lead through: narrow ones are ways where these are closed but for
 /// several.
 pub fn alike(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], first: usize) -> Vec<Strip> {
