@@ -89,6 +89,7 @@ mod turned;
 mod turns;
 mod uprights;
 mod walled;
+mod ways;
 mod whole;
 mod widening;
 mod widths;

@@ -33,9 +33,9 @@ use super::shut;
 use super::slots;
 use super::turned::Turned;
 use super::uprights::{self, Upright};
+use super::ways;
 use super::whole;
 use super::widening;
-use super::widths;
 use super::{Evidence, Ground, Scene};
 use crate::bands::{Later, Side, each, map_each};
 use crate::ends::{both, shared, wider};
@@ -272,7 +272,7 @@ impl Plan {
         let threads = evidence.threads;
         let Gates { known, ways, as_bays } = gates::find(evidence, look, views, &self.strips, &self.rows);
         let across = [&*known, &ways].concat();
-        let alike = [widths::alike(evidence, look, views, &across, known.len()), as_bays].concat();
+        let alike = [ways::told(evidence, look, views, &across, known.len()), as_bays].concat();
         let carried = carried::on(evidence, look, views, joined::apart(views, alike));
         let mut plan = if carried == self.strips { self } else { Self::new(views, carried, threads) };
         if let Some(more) = heads::with(evidence, look, views, &plan.strips, &plan.rows) {
