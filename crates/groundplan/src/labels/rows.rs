@@ -70,7 +70,7 @@ pub const DEPTH: (f64, f64) = (0.5, 3.6);
 const STACKED: f64 = 6.0;
 const LANE: f64 = 1.6;
 const FREE: f64 = 0.5;
-const STANDS: f64 = 0.2;
+const STANDS: f64 = 0.1;
 /// Lanes are tried so far apart, metres.
 const STEP: f64 = 0.4;
 /// Between two corridors what is so deep from edge to edge, which is a pixel less than it is, may be a row of shelves or
