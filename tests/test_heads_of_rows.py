@@ -326,3 +326,12 @@ def test_a_slit_behind_the_last_row_is_no_way_that_leads_on_past_its_end(head: f
     boxes = ((head, 3.0 + n * (3.0 + depth), 50.0 - head, (n + 1) * (3.0 + depth)) for n in range(4))
     survey = groundplan.survey(drawn(50.0, 4 * (3.0 + depth) + 0.4, boxes), resolution=0.05)
     assert sorted(label["type"] for label in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 4
+
+
+@pytest.mark.parametrize(
+    "by", [(0.0, 9.0, 9.0, 0.0), (9.0, 9.0, 0.0, 0.0), (0.0, 0.0, 8.0, 8.0), (10.0, 0.0, 0.0, 10.0)]
+)
+def test_aisles_lead_over_open_floor_to_the_way_that_others_beside_them_lead_to(by: tuple[float, ...]) -> None:
+    boxes = ((4.0, 3.0 + 5.2 * n, 40.0 - early, 5.2 + 5.2 * n) for n, early in enumerate(by))
+    survey = groundplan.survey(drawn(43.0, 23.8, boxes), resolution=0.05)
+    assert sorted(label["type"] for label in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 6
