@@ -18,9 +18,6 @@ use std::iter::{self, Sum};
 const NEAR: f64 = 0.3;
 /// What lies between bars is no narrower than so many bays: posts or goods narrow an empty one.
 const AS_WIDE: f64 = 0.95;
-/// But where so many others are as wide, but for so much, metres: what posts and goods leave of bays is not.
-const OTHERS: u32 = 3;
-const ALIKE: f64 = 0.06;
 /// What shares so much of a way's width is in line with it.
 const IN_LINE: f64 = 0.5;
 /// A way is told from an empty bay by its sides when these are so many times as likely those of the one as those of the other.
@@ -114,40 +111,17 @@ impl<'a> Bars<'a> {
         Self { evidence, look, place, strips, rows: place.rows.iter().map(|_| OnceCell::new()).collect() }
     }
 
-    /// True when what one of the strips passes through of the rows, between their ends, lies between bars: it is no narrower than a
-    /// bay, or others through other rows that are as wide do too.
+    /// True when what one of the strips passes through of the rows, between their ends, lies between bars.
     pub fn are_beside(&self, n: usize) -> bool {
         let is_as_wide = |bay: f64| self.strips[n].width() >= AS_WIDE * bay;
-        let told = |n: usize| self.told(n, &self.place.passing[n].rows);
-        if self.place.pitch_of(&self.place.passing[n]).is_none_or(is_as_wide) {
-            return told(n).is_some_and(|told| told.is_way());
-        }
-        let is_alike = |m: &usize| {
-            let [own, other] = [n, *m].map(|n| &self.place.passing[n].rows);
-            (self.strips[*m].width() - self.strips[n].width()).abs() <= ALIKE
-                && !own.iter().any(|row| other.contains(row))
-        };
-        let sides = |n: usize| told(n).map(|told| told.sides).filter(|sides| sides.open == 0);
-        let Some((Told { ends, bays, .. }, own)) = told(n).zip(sides(n)) else { return false };
-        let others: Vec<Often> = (0..self.strips.len()).filter(is_alike).filter_map(sides).collect();
-        let gaps = (others.len() + 1) as u32;
-        let sides = own.and(others.into_iter().sum());
-        gaps > OTHERS && bays.open + bays.closed >= gaps && Told { sides, ends, bays }.is_way()
+        self.place.pitch_of(&self.place.passing[n]).is_none_or(is_as_wide)
+            && self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_way())
     }
 
     /// True when bars stand on both sides of one of the strips and end most rows, and beside no bay.
     pub fn stand_beside_no_bays(&self, n: usize) -> bool {
         self.told(n, &self.place.passing[n].rows)
             .is_some_and(|Told { sides, ends, bays }| sides.open + bays.closed == 0 && ends.closed > ends.open)
-    }
-
-    /// True when bars end most rows, and stand at half as many sides at most of what one of the strips passes through: where another
-    /// way runs beside it, these end the rows, and it is their last bays.
-    pub fn stand_at_one_side(&self, n: usize) -> bool {
-        self.told(n, &self.place.passing[n].rows).is_some_and(|Told { sides, ends, .. }| {
-            // The sides of what leads through all rows are among the rows' ends.
-            sides.closed <= sides.open && ends.closed + sides.open > ends.open + sides.closed
-        })
     }
 
     /// True when each of the rows whose ends one of the strips leads past ends there at a bar, as most do in that part of the
@@ -325,12 +299,5 @@ mod tests {
         assert!(!often(2, 0).is_as(often(8, 0), often(4, 4)));
         assert!(!often(2, 0).is_as(often(0, 8), often(0, 8)));
         assert!(!often(2, 0).is_as(often(0, 0), often(0, 1)));
-    }
-
-    #[test]
-    fn bars_beside_several_gaps_tell_what_those_beside_one_do_not() {
-        // A third of the bays' ends is closed by goods.
-        let told = |gaps: u32| Told { sides: often(2 * gaps, 0), ends: often(10, 0), bays: often(4, 10) };
-        assert!(!told(1).is_way() && told(2).is_way());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::beside::placed;
 use super::corridors::{self, Strip};
-use super::meeting::{CLUTTER, FAR, LEAST_SINE, Meeting, SAME, meet, nearest, of_each};
+use super::meeting::{CLUTTER, LEAST_SINE, Meeting, SAME, SHORT, meet, nearest, of_each};
 use super::near::Near;
 use super::rows::{self, DEPTH};
 use super::shut::{self, LOOK, goes_on, sign};
@@ -10,13 +10,13 @@ use super::turned::{Turned, least_sine};
 use crate::bands::flat_map_each;
 use crate::ends::{overlap, shared, sorted, wider};
 use crate::subdivision::distance;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Junctions of the corridors, in the order of the corridors.
 pub fn find(views: &[Turned], strips: &[Strip], threads: usize) -> Vec<Meeting> {
     // Where two may meet both their centre lines lead, each from as far as it may.
     let widest = corridors::widest(strips);
-    let near = FAR + widest / 2.0 / least_sine(views, LEAST_SINE);
+    let near = SHORT + widest / 2.0 / least_sine(views, LEAST_SINE);
     let lines: Vec<_> = strips
         .iter()
         .map(|s| views[s.direction].rectangle([s.along[0] - near, s.along[1] + near], [s.middle(); 2]))
@@ -30,15 +30,6 @@ pub fn find(views: &[Turned], strips: &[Strip], threads: usize) -> Vec<Meeting> 
     let mut met = flat_map_each(strips.len(), threads, met_by);
     let nearest = nearest(&met, strips.len());
     met.retain(|meeting| meeting.is_led_to(&nearest));
-    // From afar one leads to what others beside it lead to.
-    let pair = |meeting: &Meeting| [meeting.corridors[0], meeting.corridors[1]];
-    let near = met.iter().filter(|meeting| meeting.are_far() == [false; 2]).map(pair);
-    let led = |[one, two]: [usize; 2]| [(two, strips[one].direction), (one, strips[two].direction)];
-    let are_led: BTreeSet<(usize, usize)> = near.flat_map(led).collect();
-    met.retain(|meeting| {
-        let mut from_afar = led(pair(meeting)).into_iter().zip(meeting.are_far()).filter(|(_, is_far)| *is_far);
-        from_afar.all(|(led, _)| are_led.contains(&led))
-    });
     let mut found: Vec<Meeting> = Vec::new();
     let mut places: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
     for meeting in met {

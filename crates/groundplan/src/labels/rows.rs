@@ -6,7 +6,7 @@ use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
 use super::near::Near;
 use super::turned::{Turned, least_sine};
-use crate::ends::{holds, overlap, shared, sorted, wider};
+use crate::ends::{holds, overlap, shared, wider};
 
 /// A piece of a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,18 +65,6 @@ impl Row {
 
 /// Two faces are this far apart, metres: less is a wall, more is a room.
 pub const DEPTH: (f64, f64) = (0.5, 3.6);
-/// Where goods stand one behind another it is no more than so much; no lane that is so wide between the faces is free over more of its
-/// length than that share, and in each something stands over more than the other.
-const STACKED: f64 = 6.0;
-const LANE: f64 = 1.6;
-const FREE: f64 = 0.5;
-const STANDS: f64 = 0.1;
-/// Lanes are tried so far apart, metres.
-const STEP: f64 = 0.4;
-/// What stands so near to a face, metres, is a wall of rooms where over more than that share of it floor is seen so far behind.
-const ON_FACE: f64 = 0.15;
-const BEHIND: [f64; 2] = [0.3, 0.8];
-const WALL: f64 = 0.4;
 /// Between two corridors what is so deep from edge to edge, which is a pixel less than it is, may be a row of shelves or
 /// machines, metres, as others beside it are.
 const SHALLOW: f64 = 0.24;
@@ -147,41 +135,9 @@ impl<'a> Crossings<'a> {
         };
         let near = self.placed[own.direction].touching(self.extents[n], wider(own.across, 2.0 * DEPTH.1));
         let others = near.into_iter().filter(|&m| m != n).map(|m| (m, gap(m)));
-        let is_behind = |&(m, gap): &(usize, f64)| {
-            gap > -SAME
-                && (gap <= DEPTH.1 || gap <= STACKED && self.is_stacked(if side == 1 { [n, m] } else { [m, n] }))
-        };
-        let mut found: Vec<(usize, f64)> = others.filter(is_behind).collect();
+        let mut found: Vec<(usize, f64)> = others.filter(|(_, gap)| *gap > -SAME && *gap <= DEPTH.1).collect();
         found.sort_by(|a, b| a.1.total_cmp(&b.1));
         found
-    }
-
-    /// True when something stands in all lanes along what lies between a corridor and another one above it, and none is free, nor are
-    /// its faces walls of rooms.
-    fn is_stacked(&self, [below, above]: [usize; 2]) -> bool {
-        let Self { views, strips, extents, .. } = *self;
-        let view = &views[strips[below].direction];
-        let columns = view.columns(shared(extents[below], extents[above]));
-        let [low, high] = [strips[below].across[1], strips[above].across[0]];
-        let is_lane = |n: usize| {
-            let [from, to] = [0.0, LANE].map(|v| low + n as f64 * STEP + v);
-            let blocked = view.some_blocked(columns.clone(), from, to);
-            let free = blocked.iter().filter(|share| **share <= 0.0).count() as f64;
-            free > FREE * columns.len() as f64 || view.share_touched(columns.clone(), from, to) < STANDS
-        };
-        let are_walls = || {
-            let [mut stands, mut walls] = [0, 0];
-            for (face, inwards) in [(low, 1.0), (high, -1.0)] {
-                let occupied = view.some_occupied(columns.clone(), face - ON_FACE, face + ON_FACE);
-                let [from, to] = sorted(BEHIND.map(|metres| face + inwards * metres));
-                let blocked = view.some_blocked(columns.clone(), from, to);
-                let standing = occupied.iter().zip(&blocked).filter(|(occupied, _)| **occupied > 0.0);
-                stands += standing.clone().count();
-                walls += standing.filter(|(_, blocked)| **blocked <= 0.0).count();
-            }
-            walls as f64 > WALL * stands as f64
-        };
-        !(0..=((high - LANE - low) / STEP) as usize).any(is_lane) && !are_walls()
     }
 
     /// A row from face to face, without so much behind those of its faces along which no corridor runs, metres.
