@@ -272,7 +272,7 @@ impl Plan {
         let threads = evidence.threads;
         let Gates { known, ways, as_bays } = gates::find(evidence, look, views, &self.strips, &self.rows);
         let across = [&*known, &ways].concat();
-        let alike = [ways::told(evidence, look, views, &across, known.len()), as_bays].concat();
+        let alike = [ways::among(evidence, look, views, &across, known.len()), as_bays].concat();
         let carried = carried::on(evidence, look, views, joined::apart(views, alike));
         let mut plan = if carried == self.strips { self } else { Self::new(views, carried, threads) };
         if let Some(more) = heads::with(evidence, look, views, &plan.strips, &plan.rows) {

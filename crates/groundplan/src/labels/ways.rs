@@ -39,7 +39,7 @@ const BEYOND: f64 = 0.6;
 /// What leads through all rows of a part of a place is a way, and what leads through some is asked about (`Asked`), unless it leads
 /// on for long. Two that lie side by side are asked about together (`Context::is_last_bay`). Strips from `first` on are known by the
 /// rows that they lead through: narrow ones are ways where these are closed but for several.
-pub fn told(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], first: usize) -> Vec<Strip> {
+pub fn among(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip], first: usize) -> Vec<Strip> {
     let mut stays = vec![true; strips.len()];
     let mut pieces: Vec<Vec<Strip>> = strips.iter().map(|strip| vec![strip.clone()]).collect();
     let placed = placed(views, strips.iter().map(Strip::place));
@@ -48,7 +48,7 @@ pub fn told(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]
         for (n, own) in place.passing.iter().enumerate().filter(|(_, own)| !own.rows.is_empty() && own.rest <= REST) {
             let asked = Asked::new(&context, n);
             let is_narrow = n >= first && asked.width < WIDTH.0 && !own.is_whole();
-            stays[n] &= asked.may_be_way() && (!is_narrow || asked.is_closed()) && !context.bars.are_parted(n);
+            stays[n] &= asked.is_way() && (!is_narrow || asked.is_closed()) && !context.bars.are_parted(n);
             if let Some(cut) = stays[n].then(|| context.bars.cut(n)).flatten() {
                 pieces[n] = cut;
             }
@@ -117,8 +117,8 @@ impl<'a> Context<'a> {
         self.beside(n, SHORTEST).any(|m| passing[m].holds_more_than(&passing[n]))
     }
 
-    /// True when a strip is no wider than a bay, or as wide as some, and nearer to it than racks are deep one that is left leads
-    /// through the same single row, or past the ends of the same rows.
+    /// True when a strip is no wider than a bay, or as wide as some, and beside it, nearer than racks are deep, one that is left
+    /// leads through the same single row, or past the ends of the same rows.
     fn is_last_bay(&self, n: usize, left: &[bool]) -> bool {
         let own = &self.place.passing[n];
         let is_beside = |m: usize| {
@@ -143,6 +143,7 @@ struct Asked<'a> {
     past_ends: &'a Widths,
     within: &'a Widths,
     expected: OnceCell<Option<f64>>,
+    is_without_bays: OnceCell<bool>,
     is_closed: OnceCell<bool>,
 }
 
@@ -151,13 +152,23 @@ impl<'a> Asked<'a> {
         let (own, strip) = (&context.place.passing[n], &context.strips[n]);
         let row = context.place.first_of(own).unwrap_or(own.rows[0]);
         let [past_ends, within] = &context.widths[context.parts[row]];
-        let (expected, is_closed) = (OnceCell::new(), OnceCell::new());
-        Self { context, n, strip, own, width: strip.width(), past_ends, within, expected, is_closed }
+        Self {
+            context,
+            n,
+            strip,
+            own,
+            width: strip.width(),
+            past_ends,
+            within,
+            expected: OnceCell::new(),
+            is_without_bays: OnceCell::new(),
+            is_closed: OnceCell::new(),
+        }
     }
 
-    /// True when it need not be asked, or its width and where it lie tell that it is a way; bars tell where these disagree or
+    /// True when it need not be asked, or its width and where it lies tell that it is a way; bars tell where these disagree or
     /// neither does.
-    fn may_be_way(&self) -> bool {
+    fn is_way(&self) -> bool {
         let bars = &self.context.bars;
         if !self.is_open_to_question() {
             return true;
@@ -270,13 +281,13 @@ impl<'a> Asked<'a> {
 
     /// True when what leads through its rows alone is no bay: its width is none's, or each row has as many and bars tell.
     fn is_way_of_its_row(&self) -> bool {
-        let (place, alone) = (self.context.place, self.context.alone());
-        let is_in_every_row = || alone.is_in_every_row(place, self.own, self.width);
+        let alone = || self.context.alone();
+        let is_in_every_row = || alone().is_in_every_row(self.context.place, self.own, self.width);
         match self.pitch() {
             Some(pitch) => {
                 !is_as_bays(self.width, pitch) || is_in_every_row() && self.context.bars.stand_beside_no_bays(self.n)
             }
-            None => alone.is_longer_than_bays(self.own, self.width) || is_in_every_row(),
+            None => alone().is_longer_than_bays(self.own, self.width) || is_in_every_row(),
         }
     }
 
@@ -292,7 +303,9 @@ impl<'a> Asked<'a> {
     /// True when no bays recur along its rows, and each row has as many as wide, or it lies as none can: it is no gap between
     /// goods, however wide.
     fn is_without_bays(&self) -> bool {
-        self.pitch().is_none() && (alone::is_one_of_each(self.context.place, self.own) || self.is_closed())
+        let is_so =
+            || self.pitch().is_none() && (alone::is_one_of_each(self.context.place, self.own) || self.is_closed());
+        *self.is_without_bays.get_or_init(is_so)
     }
 
     /// True when its rows are closed but for several ways.
