@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from _legs import Box
+from _legs import hall as drawn
 from zoo import Picture, walled
 
 import groundplan
@@ -215,3 +218,43 @@ def test_empty_bays_of_a_rack_at_a_wall_part_it_nowhere_be_two_of_them_before_a_
     for bay in {0, 1, 3, 4, 7, 8, 10, 11}:
         put(picture, 4.0 + 2.7 * bay, 0.0, 2.6, 1.0, inside=0)
     assert np.array(at_the_wall(picture)) == pytest.approx(np.array([[4.0, 36.3]]), abs=0.3)
+
+
+def stacks(depth: float, empty: float) -> Picture:
+    """Three rows of pallets, two one behind another, with a way of 3.2 m through their middles."""
+    draws = np.random.default_rng(3)
+
+    def boxes() -> Iterator[Box]:
+        for y in (3.2 + n * (3.2 + depth) for n in range(3)):
+            for x in (4.0 + 1.2 * n + (3.2 if n >= 12 else 0.0) for n in range(24)):
+                for low in (y, y + depth / 2):
+                    if draws.random() > empty:
+                        yield x + 0.05, low, x + 1.15, low + depth / 2 - 0.1
+
+    return drawn(40.0, 12.8 + 3 * depth, boxes())
+
+
+@pytest.mark.parametrize("depth", [3.0, 4.0, 4.4, 5.2])
+@pytest.mark.parametrize("empty", [0.1, 0.25])
+def test_racks_may_be_as_deep_as_rooms(depth: float, empty: float) -> None:
+    survey = groundplan.survey(stacks(depth, empty), resolution=0.05)
+    assert [rack["width"] for rack in survey.of_kind("rack")] == pytest.approx([depth - 0.1] * 6, abs=0.2)
+    kinds = sorted(label["type"] for label in survey.of_kind("junction"))
+    assert kinds == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
+
+
+@pytest.mark.parametrize("deep", [3.8, 4.6, 5.4])
+def test_furnished_rooms_between_two_corridors_are_no_racks_be_they_so_deep(deep: float) -> None:
+    """Four corridors with three rows of eight rooms between them, each with two desks and a door."""
+    picture = hall(34.0, 8.0 + 3 * deep)
+    for low in (2.0 + n * (2.0 + deep) for n in range(3)):
+        for n in range(8):
+            x = 1.0 + 4.0 * n
+            put(picture, x, low, 4.1, deep, inside=254)
+            door = low if n % 2 else low + deep - 0.1
+            for at, width, height in ((door, 0.9, 0.1), (low + 0.6, 1.6, 0.8), (low + deep - 1.6, 1.2, 0.8)):
+                value = 254 if at == door else 0
+                picture[int(20 * at) + 20 : int(20 * (at + height)) + 20, int(20 * x) + 40 :][:, : int(20 * width)] = (
+                    value
+                )
+    assert racks(picture) == []

@@ -151,11 +151,11 @@ def test_a_map_of_coarse_pixels_has_a_road_map() -> None:
     pixels = np.full((100, 160), 254, np.uint8)
     pixels[[0, -1]] = pixels[:, [0, -1]] = 0
     for row in (15, 35, 55, 75):
-        pixels[row : row + 10, 15:145] = 0
+        pixels[row : row + 12, 15:145] = 0
     map = groundplan.from_array(pixels, 0.6)
     survey = groundplan.survey(map, threads=1)
     roads = road_map(survey, map=map)
-    assert {lane.name for lane in roads.lanes} == {"A05", "A08", "A11"} and not roads.blocked
+    assert {lane.name for lane in roads.lanes} == {"A01", "A05", "A08", "A11"} and not roads.blocked
     # Lanes end 0.6 m before the walls: what is wider is in their way, and told by a pixel of the wall.
     wide = road_map(survey, map=map, vehicle_width=3.0)
     assert wide.lanes == [] and len(wide.blocked) >= 3

@@ -61,10 +61,7 @@ fn find(
         let reached = crossings.reached(n);
         for side in [0, 1] {
             let own = strip.across[side];
-            let mut open = vec![(extents[n][0], extents[n][1])];
-            for (m, _) in crossings.behind(n, side) {
-                open = without(open, extents[m][0], extents[m][1]);
-            }
+            let mut open = crossings.open(n, side);
             for row in rows[strip.direction].touching(extents[n], wider([own; 2], SAME)).into_iter().map(|m| &known[m])
             {
                 if (row.across[1 - side] - own).abs() < SAME {

@@ -18,6 +18,8 @@ use std::iter::{self, Sum};
 const NEAR: f64 = 0.3;
 /// What lies between bars is no narrower than so many bays: posts or goods narrow an empty one.
 const AS_WIDE: f64 = 0.95;
+/// What is narrower than so many bays is none that is empty, if only one of its sides has goods.
+const NARROWER: f64 = 0.92;
 /// What shares so much of a way's width is in line with it.
 const IN_LINE: f64 = 0.5;
 /// A way is told from an empty bay by its sides when these are so many times as likely those of the one as those of the other.
@@ -122,6 +124,17 @@ impl<'a> Bars<'a> {
     pub fn stand_beside_no_bays(&self, n: usize) -> bool {
         self.told(n, &self.place.passing[n].rows)
             .is_some_and(|Told { sides, ends, bays }| sides.open + bays.closed == 0 && ends.closed > ends.open)
+    }
+
+    /// True when of what one of the strips passes through bars stand at most sides, or at some where they do not end most rows:
+    /// what they part from the way beside it is no last bay. What leads through all rows has its sides among their ends.
+    pub fn part(&self, n: usize) -> bool {
+        let is_narrower = |bay: f64| self.strips[n].width() < NARROWER * bay;
+        self.place.pitch_of(&self.place.passing[n]).is_none_or(is_narrower)
+            && self.told(n, &self.place.passing[n].rows).is_some_and(|Told { sides, ends, .. }| {
+                let end_most = ends.closed + sides.open > ends.open + sides.closed;
+                sides.closed > if end_most { sides.open } else { 0 }
+            })
     }
 
     /// True when each of the rows whose ends one of the strips leads past ends there at a bar, as most do in that part of the

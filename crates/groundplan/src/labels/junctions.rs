@@ -2,10 +2,11 @@
 
 use super::beside::placed;
 use super::corridors::{self, Strip};
-use super::meeting::{CLUTTER, LEAST_SINE, Meeting, SAME, SHORT, meet, nearest, of_each};
+use super::meeting::{CLUTTER, FAR, LEAST_SINE, Meeting, SAME, meet, nearest, of_each};
 use super::near::Near;
 use super::rows::{self, DEPTH};
 use super::shut::{self, LOOK, goes_on, sign};
+use super::stacked::STACKED;
 use super::turned::{Turned, least_sine};
 use crate::bands::flat_map_each;
 use crate::ends::{overlap, shared, sorted, wider};
@@ -16,7 +17,7 @@ use std::collections::BTreeMap;
 pub fn find(views: &[Turned], strips: &[Strip], threads: usize) -> Vec<Meeting> {
     // Where two may meet both their centre lines lead, each from as far as it may.
     let widest = corridors::widest(strips);
-    let near = SHORT + widest / 2.0 / least_sine(views, LEAST_SINE);
+    let near = FAR + widest / 2.0 / least_sine(views, LEAST_SINE);
     let lines: Vec<_> = strips
         .iter()
         .map(|s| views[s.direction].rectangle([s.along[0] - near, s.along[1] + near], [s.middle(); 2]))
@@ -30,6 +31,24 @@ pub fn find(views: &[Turned], strips: &[Strip], threads: usize) -> Vec<Meeting> 
     let mut met = flat_map_each(strips.len(), threads, met_by);
     let nearest = nearest(&met, strips.len());
     met.retain(|meeting| meeting.is_led_to(&nearest));
+    // From afar one leads to what others beside it lead to.
+    let mut are_led: BTreeMap<_, Vec<&Strip>> = BTreeMap::new();
+    let led = |meeting: &Meeting, n: usize| {
+        let own = &strips[meeting.corridors[n]];
+        meeting.led(n).map(move |(to, side)| ((to, own.direction, side), own)).collect::<Vec<_>>()
+    };
+    for meeting in met.iter().filter(|meeting| meeting.are_far() == [false; 2]) {
+        for (led, own) in [0, 1].map(|n| led(meeting, n)).into_iter().flatten() {
+            are_led.entry(led).or_default().push(own);
+        }
+    }
+    let is_beside = |own: &Strip, other: &Strip| (-STACKED..=0.0).contains(&overlap(own.across, other.across));
+    met.retain(|meeting| {
+        let is_led = |(led, own): &(_, &Strip)| {
+            are_led.get(led).is_some_and(|others| others.iter().any(|other| is_beside(own, other)))
+        };
+        (0..2).filter(|&n| meeting.are_far()[n]).all(|n| led(meeting, n).iter().any(is_led))
+    });
     let mut found: Vec<Meeting> = Vec::new();
     let mut places: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
     for meeting in met {

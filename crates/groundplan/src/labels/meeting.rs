@@ -34,8 +34,10 @@ struct Leg {
     is_clear: bool,
 }
 
-/// A corridor that ends this far short of another still meets it, metres, when the way between is free.
-pub const SHORT: f64 = 6.0;
+/// A corridor that ends this far short of another still meets it, metres, when the way between is free; and so far where it meets
+/// none before.
+const SHORT: f64 = 6.0;
+pub const FAR: f64 = 13.0;
 /// But not where both lack sides for so long before they meet, metres, and no walls make a corner there.
 const OPEN: f64 = 3.0;
 /// Nothing stands in the way where no more than this share of a column is not free, without so much at the sides,
@@ -92,11 +94,24 @@ impl Meeting {
         }
     }
 
-    /// True when neither corridor is led on past another junction to this one by way of what stands there.
+    /// True when neither corridor is led on past another junction to this one from afar, or by way of what stands there, and from afar
+    /// none by that way.
     pub fn is_led_to(&self, nearest: &[[f64; 2]]) -> bool {
-        self.corridors.iter().zip(&self.legs).all(|(&corridor, leg)| {
-            leg.is_clear || (0..2).all(|side| leg.beyond[side] <= nearest[corridor][side] + SAME)
+        self.corridors.iter().zip(&self.legs).zip(self.are_far()).all(|((&corridor, leg), is_far)| {
+            let is_next = || (0..2).all(|side| leg.beyond[side] <= nearest[corridor][side] + SAME);
+            if is_far { leg.is_clear && is_next() } else { leg.is_clear || is_next() }
         })
+    }
+
+    /// Which of its first two corridors lead here from afar.
+    pub fn are_far(&self) -> [bool; 2] {
+        [0, 1].map(|n| self.legs[n].beyond.iter().any(|beyond| *beyond > SHORT + self.reach[n]))
+    }
+
+    /// To which corridor one of the first two leads here, and from which of its ends, or both.
+    pub fn led(&self, n: usize) -> impl Iterator<Item = (usize, usize)> {
+        let leads = (0..2).filter(move |side| !self.legs[n].ends[*side]);
+        leads.map(move |side| (self.corridors[1 - n], side))
     }
 
     /// There is a way out, if it is not known.
@@ -136,7 +151,7 @@ pub fn meet(views: &[Turned], strips: &[Strip], pair: [usize; 2]) -> Option<Meet
     let places = [first, second].map(|view| view.place(at)[0]);
     let reach = [two, one].map(|other| other.width() / 2.0 / sine.abs());
     for (n, strip) in [one, two].into_iter().enumerate() {
-        let near = reach[n] + SHORT;
+        let near = reach[n] + FAR;
         if places[n] < strip.along[0] - near || places[n] > strip.along[1] + near {
             return None;
         }

@@ -77,6 +77,7 @@ mod sided;
 mod sketch;
 mod slots;
 mod squares;
+mod stacked;
 mod step;
 mod stretches;
 mod strips;

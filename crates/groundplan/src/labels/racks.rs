@@ -38,10 +38,7 @@ pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], threads: u
         let reached = crossings.reached(n);
         for side in [0, 1] {
             // What of the side no nearer corridor has taken yet.
-            let mut open = vec![(extents[n][0], extents[n][1])];
-            for (m, _) in crossings.behind(n, side) {
-                open = without(open, extents[m][0], extents[m][1]);
-            }
+            let mut open = crossings.open(n, side);
             let own = strip.across[side];
             // Where no corridor runs along its other side, a row's other face must have been seen.
             for (depth, line) in lines_behind(view, own, side) {

@@ -5,8 +5,11 @@
 use super::beside::{Beside, placed};
 use super::corridors::{self, Strip};
 use super::near::Near;
+use super::stacked::{self, STACKED};
 use super::turned::{Turned, least_sine};
 use crate::ends::{holds, overlap, shared, wider};
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 /// A piece of a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,6 +111,18 @@ pub struct Crossings<'a> {
     placed: Vec<Beside>,
     /// How far along a row a crossing one may reach beyond where its other side crosses it.
     reach: f64,
+    /// Where stacked rows lie, by the corridors below and above them, once they are asked for.
+    stacked: OnceLock<BTreeMap<[usize; 2], Vec<[f64; 2]>>>,
+}
+
+/// What lies behind one side of a corridor, up to another one.
+struct Behind {
+    /// That one.
+    corridor: usize,
+    /// How far off it is, metres.
+    depth: f64,
+    /// Where it is known to lie, along.
+    along: Vec<[f64; 2]>,
 }
 
 impl<'a> Crossings<'a> {
@@ -123,20 +138,56 @@ impl<'a> Crossings<'a> {
             near: Near::polygons(&polygons),
             placed,
             reach: widest / least_sine(views, f64::MIN_POSITIVE),
+            stacked: OnceLock::new(),
         }
     }
 
-    /// The corridors on one side of a corridor, no further off than a row is deep, the nearest first; each with how far.
-    pub fn behind(&self, n: usize, side: usize) -> Vec<(usize, f64)> {
+    /// What lies behind one side of a corridor and may be a row, the nearest first.
+    fn behind(&self, n: usize, side: usize) -> Vec<Behind> {
+        let mut found: Vec<Behind> = self.others(n, side, [-SAME, DEPTH.1]).collect();
+        let stacked = self.stacked.get_or_init(|| self.stacked());
+        found.extend(self.others(n, side, [DEPTH.1, STACKED]).filter_map(|behind| {
+            let pair = if side == 1 { [n, behind.corridor] } else { [behind.corridor, n] };
+            stacked.get(&pair).map(|along| Behind { along: along.clone(), ..behind })
+        }));
+        found.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+        found
+    }
+
+    /// The corridors on one side of a corridor that are further off than the one depth, and no further than the other.
+    fn others(&self, n: usize, side: usize, [from, to]: [f64; 2]) -> impl Iterator<Item = Behind> {
         let own = &self.strips[n];
-        let gap = |m: usize| {
+        let depth = move |m: usize| {
             let other = &self.strips[m];
             if side == 1 { other.across[0] - own.across[1] } else { own.across[0] - other.across[1] }
         };
-        let near = self.placed[own.direction].touching(self.extents[n], wider(own.across, 2.0 * DEPTH.1));
-        let others = near.into_iter().filter(|&m| m != n).map(|m| (m, gap(m)));
-        let mut found: Vec<(usize, f64)> = others.filter(|(_, gap)| *gap > -SAME && *gap <= DEPTH.1).collect();
-        found.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let near = self.placed[own.direction].touching(self.extents[n], wider(own.across, to));
+        let others = near.into_iter().filter(move |&m| m != n && depth(m) > from && depth(m) <= to);
+        others.map(move |m| Behind { corridor: m, depth: depth(m), along: vec![self.extents[m]] })
+    }
+
+    /// What of one side of a corridor no row between corridors may lie along.
+    pub fn open(&self, n: usize, side: usize) -> Vec<(f64, f64)> {
+        let behind = self.behind(n, side).into_iter().flat_map(|behind| behind.along);
+        behind.fold(vec![(self.extents[n][0], self.extents[n][1])], |open, [from, to]| without(open, from, to))
+    }
+
+    /// The pieces of stacked rows, by the corridors below and above them.
+    fn stacked(&self) -> BTreeMap<[usize; 2], Vec<[f64; 2]>> {
+        let Self { strips, extents, .. } = *self;
+        let rows = |n: usize| {
+            let own = &strips[n];
+            self.others(n, 1, [DEPTH.1, STACKED]).flat_map(move |Behind { corridor: m, .. }| {
+                let across = [own.across[1], strips[m].across[0]];
+                let along = shared(extents[n], extents[m]);
+                let pieces = self.uncrossed(own.direction, across, vec![(along[0], along[1])]).into_iter();
+                pieces.map(move |along| Row { direction: own.direction, along, across, between: Some([n, m]) })
+            })
+        };
+        let mut found: BTreeMap<_, Vec<_>> = BTreeMap::new();
+        for row in stacked::find(self.views, (0..strips.len()).flat_map(rows).collect()) {
+            found.entry(row.between.unwrap_or_default()).or_default().push(row.along);
+        }
         found
     }
 
@@ -151,24 +202,32 @@ impl<'a> Crossings<'a> {
 
     /// What lies between neighbouring corridors.
     pub fn between(&self) -> Vec<Row> {
-        self.so_deep(|depth| depth >= SHALLOW)
+        self.so_deep(|n| self.behind(n, 1), |depth| depth >= SHALLOW)
     }
 
     /// What lies between neighbouring corridors and is too thin for a row; their sides may lie a little within one another.
     pub fn walls(&self) -> Vec<Row> {
-        self.so_deep(|depth| depth < SHALLOW)
+        let near = |n| {
+            let mut near: Vec<Behind> = self.others(n, 1, [-SAME, SHALLOW]).collect();
+            near.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+            near
+        };
+        self.so_deep(near, |depth| depth < SHALLOW)
     }
 
     /// What lies between neighbouring corridors and is as deep as is asked for.
-    fn so_deep(&self, is_so_deep: impl Fn(f64) -> bool) -> Vec<Row> {
+    fn so_deep(&self, behind: impl Fn(usize) -> Vec<Behind>, is_so_deep: impl Fn(f64) -> bool) -> Vec<Row> {
         let Self { strips, extents, .. } = *self;
         let mut rows = Vec::new();
         for (n, strip) in strips.iter().enumerate() {
             let mut open = vec![(extents[n][0], extents[n][1])];
-            for (m, depth) in self.behind(n, 1) {
-                let [from, to] = extents[m];
-                let shared = open.iter().map(|(a, b)| (a.max(from), b.min(to))).filter(|(a, b)| a < b).collect();
-                open = without(open, from, to);
+            for Behind { corridor: m, depth, along } in behind(n) {
+                let within = |[from, to]: &[f64; 2]| {
+                    let shared = open.iter().map(|(a, b)| (a.max(*from), b.min(*to)));
+                    shared.filter(|(a, b)| a < b).collect::<Vec<_>>()
+                };
+                let shared = along.iter().flat_map(within).collect();
+                open = along.iter().fold(open, |open, [from, to]| without(open, *from, *to));
                 if is_so_deep(depth) {
                     let across = [strip.across[1], strips[m].across[0]];
                     let pieces = self.uncrossed(strip.direction, across, shared).into_iter();
