@@ -243,6 +243,29 @@ def test_racks_may_be_as_deep_as_rooms(depth: float, empty: float) -> None:
     assert kinds == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
 
 
+@pytest.mark.parametrize("depth", [4.0, 5.2])
+def test_mirrored_racks_as_deep_as_rooms_are_as_many_and_as_long(depth: float) -> None:
+    def lengths(picture: Picture) -> list[float]:
+        survey = groundplan.survey(np.ascontiguousarray(picture), resolution=0.05)
+        return sorted(float(np.hypot(*np.subtract(*rack["axis"]))) for rack in survey.of_kind("rack"))
+
+    picture = stacks(depth, 0.25)
+    for mirrored in (picture[::-1], picture[:, ::-1]):
+        assert lengths(mirrored) == pytest.approx(lengths(picture), abs=0.25)
+
+
+@pytest.mark.parametrize("depth", [4.0, 4.8, 5.6])
+def test_two_racks_are_two_though_nobody_saw_the_aisle_between_them(depth: float) -> None:
+    deep = depth / 2 - 0.75
+    picture = hall(38.0, 15.6 + 4 * depth)
+    for y in (3.0 + n * (3.2 + depth) for n in range(4)):
+        put(picture, 4.0, y, 30.0, depth, inside=205)
+        picture[int(20 * (y + deep)) + 20 : int(20 * (y + deep + 1.5)) + 20, 100:700] = 205
+        for low in (y, y + deep + 1.5):
+            put(picture, 4.0, low, 30.0, deep, inside=0)
+    assert [rack["width"] for rack in racks(picture)] == pytest.approx([deep] * 8, abs=0.15)
+
+
 @pytest.mark.parametrize("deep", [3.8, 4.6, 5.4])
 def test_furnished_rooms_between_two_corridors_are_no_racks_be_they_so_deep(deep: float) -> None:
     """Four corridors with three rows of eight rooms between them, each with two desks and a door."""

@@ -53,7 +53,7 @@ fn find(
     threads: usize,
     is_row: Told,
 ) -> Vec<Row> {
-    let crossings = Crossings::new(views, strips, extents);
+    let crossings = Crossings::of_racks(views, strips, extents);
     let rows = placed(views, known.iter().map(Row::place));
     let beside = |n: usize| {
         let (strip, mut found) = (&strips[n], Vec::new());

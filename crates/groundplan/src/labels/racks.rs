@@ -27,7 +27,7 @@ const PLACE: (usize, f64) = (3, 0.29);
 
 /// The rows between the corridors and at the outer sides of them, the longest first.
 pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], threads: usize) -> Vec<Row> {
-    let crossings = Crossings::new(views, strips, extents);
+    let crossings = Crossings::of_racks(views, strips, extents);
     let between = crossings.between();
     let holds = |view: &Turned, row: &Row| taken(view, row) >= TAKEN || is_outlined(view, row);
     let held = |n: usize| Some(&between[n]).filter(|row| holds(&views[row.direction], row)).cloned();

@@ -111,6 +111,8 @@ pub struct Crossings<'a> {
     placed: Vec<Beside>,
     /// How far along a row a crossing one may reach beyond where its other side crosses it.
     reach: f64,
+    /// Of stacked rows those alone count along which bays recur.
+    with_bays: bool,
     /// Where stacked rows lie, by the corridors below and above them, once they are asked for.
     stacked: OnceLock<BTreeMap<[usize; 2], Vec<[f64; 2]>>>,
 }
@@ -138,8 +140,14 @@ impl<'a> Crossings<'a> {
             near: Near::polygons(&polygons),
             placed,
             reach: widest / least_sine(views, f64::MIN_POSITIVE),
+            with_bays: false,
             stacked: OnceLock::new(),
         }
+    }
+
+    /// The same where racks are asked for: of what is as deep as rooms that counts alone along which bays recur.
+    pub fn of_racks(views: &'a [Turned], strips: &'a [Strip], extents: &'a [[f64; 2]]) -> Self {
+        Self { with_bays: true, ..Self::new(views, strips, extents) }
     }
 
     /// What lies behind one side of a corridor and may be a row, the nearest first.
@@ -186,6 +194,9 @@ impl<'a> Crossings<'a> {
         };
         let mut found: BTreeMap<_, Vec<_>> = BTreeMap::new();
         for row in stacked::find(self.views, (0..strips.len()).flat_map(rows).collect()) {
+            if self.with_bays && self.views[row.direction].pitch_of(&row).is_none() {
+                continue;
+            }
             found.entry(row.between.unwrap_or_default()).or_default().push(row.along);
         }
         found

@@ -6,7 +6,7 @@ use super::beside::placed;
 use super::blocks::{self, Standing, are_alike, beside, standing_near};
 use super::corridors::{self, Strip};
 use super::racks;
-use super::rows::{Crossings, DEPTH, Row, SHORTEST, heaviest};
+use super::rows::{Crossings, Row, SHORTEST, heaviest};
 use super::shut::sign;
 use super::turned::Turned;
 use crate::bands::flat_map_each;
@@ -53,10 +53,7 @@ pub fn find(
 ) -> Vec<Row> {
     let mut known = without_walls(views, rows);
     known.extend(at_walls::past_which_ways_lead(views, strips, extents, &known, threads));
-    // What is as deep as rooms tells of racks where bays recur along it.
-    let tells = |row: &&Row| row.depth() <= DEPTH.1 || views[row.direction].pitch_of(row).is_some();
-    let telling: Vec<Row> = known.iter().filter(tells).cloned().collect();
-    if racks::are_here(&telling, extents) && racks::are_here(&of_a_kind(&telling), extents) {
+    if racks::are_here(&known, extents) && racks::are_here(&of_a_kind(&known), extents) {
         known.extend(at_walls::of_goods(views, strips, extents, &known, threads));
     } else {
         known.clear();
