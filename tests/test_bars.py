@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import pytest
+from _legs import Box
+from _legs import hall as drawn
 
 import groundplan
 from groundplan import simulate
@@ -85,3 +89,35 @@ def test_a_gap_beside_which_no_bar_stands_is_no_way_where_bars_end_all_rows() ->
 def test_a_way_between_bars_through_several_rows_is_no_empty_bay_though_it_is_narrower() -> None:
     site: dict[str, Any] = {"seed": 70066, "yaw": -2.8, "width": 35.16, "depth": 27.34, "aisle": 3.23}
     assert typed(**site, cross_aisle=2.81, cross_aisles=2, sparse=0.6, halls=2) == 1
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(("depth", "empty"), [(2.2, 0.3), (4.4, 0.15)])
+def test_ways_narrower_than_bays_through_one_row_each_are_ways_where_as_wide_ones_between_bars_are(
+    depth: float, empty: float, seed: int
+) -> None:
+    """Four rows of 15 bays of 2.8 m, each between bars, and parted by a way of 2.3 m between two more."""
+    draws = np.random.default_rng(seed)
+
+    def row(y: float, parted: int) -> Iterator[Box]:
+        x = 4.0
+        for n in range(15):
+            if n in (0, parted):
+                yield x, y, x + 0.1, y + depth
+            for low in np.linspace(y, y + depth - 0.1, 3):
+                yield x, low, x + 0.1, low + 0.1
+                yield x + 2.8, low, x + 2.9, low + 0.1
+            for low in (y, y + depth / 2):
+                goods = [m for m in range(3) if draws.random() > empty]
+                yield from ((x + 0.15 + 0.87 * m, low, x + 0.95 + 0.87 * m, low + depth / 2 - 0.1) for m in goods)
+            x += 2.8
+            if n in (parted - 1, 14):
+                yield x, y, x + 0.1, y + depth
+                x += 2.4
+        assert x > 48.0
+
+    parted = [4, 10, 6, 12]
+    boxes = (box for n in range(4) for box in row(3.2 + n * (3.2 + depth), parted[n]))
+    survey = groundplan.survey(drawn(52.5, 16.0 + 4 * depth, boxes), resolution=0.05)
+    across = sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C"))
+    assert across == pytest.approx([2.3] * 4 + [4.0] * 2, abs=0.2)

@@ -295,32 +295,6 @@ def test_a_way_leads_past_few_rows_that_end_alike_before_an_office_which_the_nex
     assert sorted(label["type"] for label in beside) == ["L", "T", "T"]
 
 
-@pytest.mark.parametrize(
-    ("parted", "rows"), [("rail", 2), ("rail", 3), ("bollards", 2), ("bollards", 3), ("bollards", 4)]
-)
-@pytest.mark.parametrize(("bay", "lane", "walkway"), [(3.6, 3.2, 2.2), (3.3, 2.8, 3.0)])
-def test_a_lane_before_the_rows_is_one_though_a_rail_parts_it_from_a_walkway_along_the_wall(
-    bay: float, lane: float, walkway: float, parted: str, rows: int
-) -> None:
-    draws = np.random.default_rng(7)
-    first = walkway + 0.1 + lane
-
-    def row(y: float) -> Iterator[Box]:
-        full = [n for n in range(10) if draws.random() > 0.25]
-        for x in (first + n * bay for n in range(11)):
-            yield from ((x, low, x + 0.1, low + 0.1) for low in (y, y + 1.05, y + 2.1))
-        yield from ((first + n * bay + 0.15, y, first + (n + 1) * bay - 0.15, y + 2.2) for n in full)
-        if parted == "rail":
-            yield walkway, y, walkway + 0.1, y + 2.2
-        else:
-            yield from ((walkway, y + 0.7 * n, walkway + 0.1, y + 0.7 * n + 0.1) for n in range(4))
-
-    boxes = (box for n in range(rows) for box in row(3.2 + 5.4 * n))
-    survey = groundplan.survey(drawn(first + 10 * bay + 4.5, 3.2 + 5.4 * rows, boxes), resolution=0.05)
-    # An aisle along each face, the walkway, the lane and the way along the other wall.
-    assert len(survey.of_kind("corridor")) == rows + 1 + 3
-
-
 @pytest.mark.parametrize(("head", "depth"), [(3.0, 1.8), (4.0, 2.4), (4.0, 2.7)])
 def test_a_slit_behind_the_last_row_is_no_way_that_leads_on_past_its_end(head: float, depth: float) -> None:
     boxes = ((head, 3.0 + n * (3.0 + depth), 50.0 - head, (n + 1) * (3.0 + depth)) for n in range(4))
@@ -328,10 +302,20 @@ def test_a_slit_behind_the_last_row_is_no_way_that_leads_on_past_its_end(head: f
     assert sorted(label["type"] for label in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 4
 
 
-@pytest.mark.parametrize(
-    "by", [(0.0, 9.0, 9.0, 0.0), (9.0, 9.0, 0.0, 0.0), (0.0, 0.0, 8.0, 8.0), (10.0, 0.0, 0.0, 10.0)]
-)
-def test_aisles_lead_over_open_floor_to_the_way_that_others_beside_them_lead_to(by: tuple[float, ...]) -> None:
+@pytest.mark.parametrize("by", [(0, 9, 9, 0), (9, 9, 0, 0), (0, 0, 8, 8), (10, 0, 0, 10), (0, 9, 9, 9, 9, 0)])
+def test_aisles_lead_over_open_floor_to_the_way_that_others_beside_them_lead_to(by: tuple[int, ...]) -> None:
     boxes = ((4.0, 3.0 + 5.2 * n, 40.0 - early, 5.2 + 5.2 * n) for n, early in enumerate(by))
-    survey = groundplan.survey(drawn(43.0, 23.8, boxes), resolution=0.05)
-    assert sorted(label["type"] for label in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 6
+    survey = groundplan.survey(drawn(43.0, 3.0 + 5.2 * len(by), boxes), resolution=0.05)
+    assert sorted(label["type"] for label in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 2 * (len(by) - 1)
+
+
+def test_aisles_lead_past_goods_to_the_way_before_them_though_those_of_another_zone_point_there_from_afar() -> None:
+    def boxes() -> Iterator[Box]:
+        yield from ((x, 3.0, x + 2.2, 13.0) for x in (3.0, 8.2, 13.4, 18.6))
+        yield 23.8, 3.0, 25.0, 13.0
+        for y in (18.0, 23.2, 28.4):
+            yield 4.0, y, 20.5, y + 2.2
+            yield 22.0, y + 2.5, 23.0, y + 3.7
+
+    survey = groundplan.survey(drawn(28.0, 33.6, boxes()), resolution=0.05)
+    assert len(survey.of_kind("junction")) == 19

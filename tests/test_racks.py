@@ -266,6 +266,42 @@ def test_two_racks_are_two_though_nobody_saw_the_aisle_between_them(depth: float
     assert [rack["width"] for rack in racks(picture)] == pytest.approx([deep] * 8, abs=0.15)
 
 
+@pytest.mark.parametrize("share", [0.3, 0.5, 0.65])
+def test_no_rack_is_laid_over_an_aisle_between_two_in_which_goods_stand(share: float) -> None:
+    draws = np.random.default_rng(2)
+
+    def boxes() -> Iterator[Box]:
+        for low in (3.0, 10.1, 17.2):
+            for y in (low, low + 2.7):
+                yield from ((4.0 + 2.7 * n, leg, 4.1 + 2.7 * n, leg + 0.1) for n in range(13) for leg in (y, y + 1.3))
+                goods = (4.2 + 2.7 * n + 0.8 * m for n in range(12) for m in range(3) if draws.random() > 0.1)
+                yield from ((x, y + draws.uniform(0, 0.1), x + 0.7, y + 1.4 - draws.uniform(0, 0.1)) for x in goods)
+            length = 32.4 * share / 2
+            yield 8.9, low + 1.3, 8.9 + length, low + 2.8
+            yield 36.4 - length, low + 1.3, 36.4, low + 2.8
+
+    found = racks(drawn(40.4, 24.3, boxes()))
+    assert len(found) >= 6 and all(rack["width"] < 1.6 for rack in found)
+
+
+def test_furnished_rooms_between_thick_walls_are_no_racks_where_pixels_are_coarse() -> None:
+    """Three rows of five rooms of 5.6 m by 4 m, each with two desks and a door, between walls of 0.5 m."""
+    picture = np.full((260, 400), 205, np.uint8)
+    picture[19:-19, 19:-19] = 0
+    picture[20:-20, 20:-20] = 254
+    for low in (40 + 60 * row for row in range(3)):
+        for left in (40 + 56 * n for n in range(6)):
+            picture[low : low + 40, left : left + 5] = 0
+        for n, left in enumerate(40 + 56 * n for n in range(5)):
+            picture[[low, low + 1, low + 38, low + 39], left : left + 56] = 0
+            door = low if n % 2 else low + 38
+            picture[door : door + 2, left + 15 : left + 24] = 254
+            picture[low + 10 : low + 18, left + 8 : left + 50] = 0
+            picture[low + 24 : low + 32, left + 8 : left + 50] = 0
+    survey = groundplan.survey(picture, resolution=0.1)
+    assert not survey.of_kind("rack") and len(survey.of_kind("door")) == 15
+
+
 @pytest.mark.parametrize("deep", [3.8, 4.6, 5.4])
 def test_furnished_rooms_between_two_corridors_are_no_racks_be_they_so_deep(deep: float) -> None:
     """Four corridors with three rows of eight rooms between them, each with two desks and a door."""

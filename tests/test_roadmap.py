@@ -150,6 +150,7 @@ def test_spurs_and_wide_vehicles_keep_clear_of_what_is_occupied(options: dict[st
 def test_a_map_of_coarse_pixels_has_a_road_map() -> None:
     pixels = np.full((100, 160), 254, np.uint8)
     pixels[[0, -1]] = pixels[:, [0, -1]] = 0
+    # Of rows 7 m deep no way leads past the ends, and aisles lead up to the walls.
     for row in (15, 35, 55, 75):
         pixels[row : row + 12, 15:145] = 0
     map = groundplan.from_array(pixels, 0.6)

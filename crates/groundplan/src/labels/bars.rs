@@ -10,7 +10,7 @@ use super::passing::Place;
 use super::rows::SHORTEST;
 use super::sections::{Columns, SIDE};
 use super::walled;
-use crate::ends::{overlap, wider};
+use crate::ends::{holds, overlap, wider};
 use std::cell::OnceCell;
 use std::iter::{self, Sum};
 
@@ -18,8 +18,12 @@ use std::iter::{self, Sum};
 const NEAR: f64 = 0.3;
 /// What lies between bars is no narrower than so many bays: posts or goods narrow an empty one.
 const AS_WIDE: f64 = 0.95;
-/// What is narrower than so many bays is none that is empty, if only one of its sides has goods.
-const NARROWER: f64 = 0.92;
+/// From so many bays to so many is none that is empty, which posts or goods narrow by less, and pallets by more. What is so wide
+/// may be a way where so many others are too, but for so much, metres, and bars end so many times as many rows as they do not.
+const NARROW: [f64; 2] = [0.75, 0.88];
+const OTHERS: usize = 3;
+const ALIKE: f64 = 0.06;
+const ENDS: u32 = 8;
 /// What shares so much of a way's width is in line with it.
 const IN_LINE: f64 = 0.5;
 /// A way is told from an empty bay by its sides when these are so many times as likely those of the one as those of the other.
@@ -113,28 +117,41 @@ impl<'a> Bars<'a> {
         Self { evidence, look, place, strips, rows: place.rows.iter().map(|_| OnceCell::new()).collect() }
     }
 
-    /// True when what one of the strips passes through of the rows, between their ends, lies between bars.
+    /// True when what one of the strips passes through of the rows, between their ends, lies between bars: it is no narrower than a
+    /// bay, or several through other rows are as wide.
     pub fn are_beside(&self, n: usize) -> bool {
+        let bay = self.place.pitch_of(&self.place.passing[n]);
         let is_as_wide = |bay: f64| self.strips[n].width() >= AS_WIDE * bay;
-        self.place.pitch_of(&self.place.passing[n]).is_none_or(is_as_wide)
-            && self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_way())
+        if bay.is_none_or(is_as_wide) {
+            return self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_way());
+        }
+        bay.is_some_and(|bay| holds(NARROW.map(|part| part * bay), self.strips[n].width()))
+            && self.are_beside_several(n)
+    }
+
+    /// True when one of the strips lies between bars, and so do several as wide through other rows, where bars end nearly all
+    /// rows: all told they stand there as at rows' ends.
+    fn are_beside_several(&self, n: usize) -> bool {
+        let is_between = |n: usize| {
+            let told = self.told(n, &self.place.passing[n].rows)?;
+            (told.sides.open == 0 && told.ends.closed >= ENDS * told.ends.open).then_some(told)
+        };
+        let is_alike = |&m: &usize| {
+            let [own, other] = [n, m].map(|n| &self.place.passing[n].rows);
+            (self.strips[m].width() - self.strips[n].width()).abs() <= ALIKE
+                && !own.iter().any(|row| other.contains(row))
+        };
+        let Some(told) = is_between(n) else { return false };
+        let others = (0..self.strips.len()).filter(is_alike).filter_map(is_between);
+        let others: Vec<Often> = others.map(|told| told.sides).collect();
+        let are_several = others.len() >= OTHERS && (told.bays.open + told.bays.closed) as usize > others.len();
+        are_several && Told { sides: told.sides.and(others.into_iter().sum()), ..told }.is_way()
     }
 
     /// True when bars stand on both sides of one of the strips and end most rows, and beside no bay.
     pub fn stand_beside_no_bays(&self, n: usize) -> bool {
         self.told(n, &self.place.passing[n].rows)
             .is_some_and(|Told { sides, ends, bays }| sides.open + bays.closed == 0 && ends.closed > ends.open)
-    }
-
-    /// True when of what one of the strips passes through bars stand at most sides, or at some where they do not end most rows:
-    /// what they part from the way beside it is no last bay. What leads through all rows has its sides among their ends.
-    pub fn part(&self, n: usize) -> bool {
-        let is_narrower = |bay: f64| self.strips[n].width() < NARROWER * bay;
-        self.place.pitch_of(&self.place.passing[n]).is_none_or(is_narrower)
-            && self.told(n, &self.place.passing[n].rows).is_some_and(|Told { sides, ends, .. }| {
-                let end_most = ends.closed + sides.open > ends.open + sides.closed;
-                sides.closed > if end_most { sides.open } else { 0 }
-            })
     }
 
     /// True when each of the rows whose ends one of the strips leads past ends there at a bar, as most do in that part of the

@@ -28,27 +28,10 @@ pub fn find(views: &[Turned], strips: &[Strip], threads: usize) -> Vec<Meeting> 
         let others = others.filter(move |b| strips[a].direction != strips[*b].direction);
         others.filter_map(move |b| meet(views, strips, [a, b]))
     };
-    let mut met = flat_map_each(strips.len(), threads, met_by);
+    let met = flat_map_each(strips.len(), threads, met_by);
+    let mut met = led_from_afar(strips, met);
     let nearest = nearest(&met, strips.len());
     met.retain(|meeting| meeting.is_led_to(&nearest));
-    // From afar one leads to what others beside it lead to.
-    let mut are_led: BTreeMap<_, Vec<&Strip>> = BTreeMap::new();
-    let led = |meeting: &Meeting, n: usize| {
-        let own = &strips[meeting.corridors[n]];
-        meeting.led(n).map(move |(to, side)| ((to, own.direction, side), own)).collect::<Vec<_>>()
-    };
-    for meeting in met.iter().filter(|meeting| meeting.are_far() == [false; 2]) {
-        for (led, own) in [0, 1].map(|n| led(meeting, n)).into_iter().flatten() {
-            are_led.entry(led).or_default().push(own);
-        }
-    }
-    let is_beside = |own: &Strip, other: &Strip| (-STACKED..=0.0).contains(&overlap(own.across, other.across));
-    met.retain(|meeting| {
-        let is_led = |(led, own): &(_, &Strip)| {
-            are_led.get(led).is_some_and(|others| others.iter().any(|other| is_beside(own, other)))
-        };
-        (0..2).filter(|&n| meeting.are_far()[n]).all(|n| led(meeting, n).iter().any(is_led))
-    });
     let mut found: Vec<Meeting> = Vec::new();
     let mut places: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
     for meeting in met {
@@ -76,6 +59,44 @@ pub fn find(views: &[Turned], strips: &[Strip], threads: usize) -> Vec<Meeting> 
         None => false,
     });
     found
+}
+
+/// Where corridors meet, but from afar only what is the first that one meets, over open floor, and another beside it, over a row,
+/// meets too, from the same side: one from near, or from afar as this does.
+fn led_from_afar(strips: &[Strip], met: Vec<Meeting>) -> Vec<Meeting> {
+    let led = |meeting: &Meeting, n: usize| {
+        let own = &strips[meeting.corridors[n]];
+        meeting.led(n).map(move |(to, side)| ((to, own.direction, side), own)).collect::<Vec<_>>()
+    };
+    let nearest = nearest(&met, strips.len());
+    let is_first = |meeting: &Meeting| {
+        let mut from_afar = (0..2).filter(|&n| meeting.are_far()[n]);
+        from_afar.all(|n| meeting.is_first(n, &nearest))
+    };
+    let (mut kept, mut far): (Vec<_>, Vec<_>) =
+        met.into_iter().filter(is_first).partition(|meeting| meeting.are_far() == [false; 2]);
+    // With a row between, be it as deep as any.
+    let is_beside = |own: &Strip, other: &Strip| (-STACKED..=0.0).contains(&overlap(own.across, other.across));
+    let mut known: BTreeMap<_, Vec<&Strip>> = BTreeMap::new();
+    let mut next = 0;
+    while next < kept.len() {
+        for meeting in &kept[next..] {
+            for (led, own) in [0, 1].map(|n| led(meeting, n)).into_iter().flatten() {
+                known.entry(led).or_default().push(own);
+            }
+        }
+        next = kept.len();
+        let is_led = |(led, own): &(_, &Strip)| {
+            known.get(led).is_some_and(|others| others.iter().any(|other| is_beside(own, other)))
+        };
+        let stays =
+            |meeting: &Meeting| (0..2).filter(|&n| meeting.are_far()[n]).all(|n| led(meeting, n).iter().any(is_led));
+        let (more, rest): (Vec<_>, Vec<_>) = far.into_iter().partition(stays);
+        kept.extend(more);
+        far = rest;
+    }
+    kept.sort_by(|one, two| one.corridors.cmp(&two.corridors));
+    kept
 }
 
 /// True when of some corridors one runs beside one of others with something between them: these lead to two junctions, be

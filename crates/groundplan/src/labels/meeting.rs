@@ -34,9 +34,9 @@ struct Leg {
     is_clear: bool,
 }
 
-/// A corridor that ends this far short of another still meets it, metres, when the way between is free; and so far where it meets
-/// none before.
+/// A corridor that ends this far short of another still meets it, metres, when the way between is free.
 const SHORT: f64 = 6.0;
+/// And so far where it is the first that it meets, and others beside it meet it too.
 pub const FAR: f64 = 13.0;
 /// But not where both lack sides for so long before they meet, metres, and no walls make a corner there.
 const OPEN: f64 = 3.0;
@@ -94,13 +94,19 @@ impl Meeting {
         }
     }
 
-    /// True when neither corridor is led on past another junction to this one from afar, or by way of what stands there, and from afar
-    /// none by that way.
+    /// True when neither corridor is led on past another junction to this one by way of what stands there.
     pub fn is_led_to(&self, nearest: &[[f64; 2]]) -> bool {
-        self.corridors.iter().zip(&self.legs).zip(self.are_far()).all(|((&corridor, leg), is_far)| {
-            let is_next = || (0..2).all(|side| leg.beyond[side] <= nearest[corridor][side] + SAME);
-            if is_far { leg.is_clear && is_next() } else { leg.is_clear || is_next() }
-        })
+        (0..2).all(|n| self.legs[n].is_clear || self.is_next(n, nearest))
+    }
+
+    /// True when one of its first two corridors leads here over open floor, and to no other before.
+    pub fn is_first(&self, n: usize, nearest: &[[f64; 2]]) -> bool {
+        self.legs[n].is_clear && self.is_next(n, nearest)
+    }
+
+    fn is_next(&self, n: usize, nearest: &[[f64; 2]]) -> bool {
+        let nearest = nearest[self.corridors[n]];
+        (0..2).all(|side| self.legs[n].beyond[side] <= nearest[side] + SAME)
     }
 
     /// Which of its first two corridors lead here from afar.

@@ -27,7 +27,19 @@ const PLACE: (usize, f64) = (3, 0.29);
 
 /// The rows between the corridors and at the outer sides of them, the longest first.
 pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], threads: usize) -> Vec<Row> {
-    let crossings = Crossings::of_racks(views, strips, extents);
+    find_by(views, strips, &Crossings::new(views, strips, extents), threads)
+}
+
+/// The same where racks are asked for: what is as deep as rooms is one where bays recur along it, and its sides are asked anew
+/// where they do not.
+pub fn with_bays(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], rows: &[Row], threads: usize) -> Vec<Row> {
+    if rows.iter().all(|row| row.depth() <= DEPTH.1 || views[row.direction].pitch_of(row).is_some()) {
+        return rows.to_vec();
+    }
+    find_by(views, strips, &Crossings::of_racks(views, strips, extents), threads)
+}
+
+fn find_by(views: &[Turned], strips: &[Strip], crossings: &Crossings, threads: usize) -> Vec<Row> {
     let between = crossings.between();
     let holds = |view: &Turned, row: &Row| taken(view, row) >= TAKEN || is_outlined(view, row);
     let held = |n: usize| Some(&between[n]).filter(|row| holds(&views[row.direction], row)).cloned();

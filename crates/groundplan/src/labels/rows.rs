@@ -84,6 +84,8 @@ const ALONG: f64 = 0.8;
 /// A beam is no deeper, metres; and in racks there are so many such lanes at least.
 const BEAM: f64 = 0.24;
 const LANES: usize = 2;
+/// What runs along within a stacked row for less shows between its goods, metres, and is no way.
+const WAY: f64 = 4.5;
 /// Sides nearer than this are the same, metres.
 pub const SAME: f64 = 0.3;
 
@@ -152,26 +154,29 @@ impl<'a> Crossings<'a> {
 
     /// What lies behind one side of a corridor and may be a row, the nearest first.
     fn behind(&self, n: usize, side: usize) -> Vec<Behind> {
-        let mut found: Vec<Behind> = self.others(n, side, [-SAME, DEPTH.1]).collect();
+        let mut found = self.others(n, side, [-SAME, DEPTH.1]);
         let stacked = self.stacked.get_or_init(|| self.stacked());
-        found.extend(self.others(n, side, [DEPTH.1, STACKED]).filter_map(|behind| {
+        found.extend(self.others(n, side, [DEPTH.1, STACKED]).into_iter().filter_map(|behind| {
             let pair = if side == 1 { [n, behind.corridor] } else { [behind.corridor, n] };
             stacked.get(&pair).map(|along| Behind { along: along.clone(), ..behind })
         }));
-        found.sort_by(|a, b| a.depth.total_cmp(&b.depth));
         found
     }
 
-    /// The corridors on one side of a corridor that are further off than the one depth, and no further than the other.
-    fn others(&self, n: usize, side: usize, [from, to]: [f64; 2]) -> impl Iterator<Item = Behind> {
+    /// The corridors on one side of a corridor that are further off than the one depth, and no further than the other, the nearest
+    /// first.
+    fn others(&self, n: usize, side: usize, [from, to]: [f64; 2]) -> Vec<Behind> {
         let own = &self.strips[n];
-        let depth = move |m: usize| {
+        let depth = |m: usize| {
             let other = &self.strips[m];
             if side == 1 { other.across[0] - own.across[1] } else { own.across[0] - other.across[1] }
         };
         let near = self.placed[own.direction].touching(self.extents[n], wider(own.across, to));
-        let others = near.into_iter().filter(move |&m| m != n && depth(m) > from && depth(m) <= to);
-        others.map(move |m| Behind { corridor: m, depth: depth(m), along: vec![self.extents[m]] })
+        let others = near.into_iter().filter(|&m| m != n && depth(m) > from && depth(m) <= to);
+        let mut found: Vec<Behind> =
+            others.map(|m| Behind { corridor: m, depth: depth(m), along: vec![self.extents[m]] }).collect();
+        found.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+        found
     }
 
     /// What of one side of a corridor no row between corridors may lie along.
@@ -180,26 +185,34 @@ impl<'a> Crossings<'a> {
         behind.fold(vec![(self.extents[n][0], self.extents[n][1])], |open, [from, to]| without(open, from, to))
     }
 
-    /// The pieces of stacked rows, by the corridors below and above them.
+    /// The pieces of stacked rows, by the corridors below and above them. None is laid over a corridor.
     fn stacked(&self) -> BTreeMap<[usize; 2], Vec<[f64; 2]>> {
         let Self { strips, extents, .. } = *self;
-        let rows = |n: usize| {
+        let pieces = |n: usize| {
             let own = &strips[n];
-            self.others(n, 1, [DEPTH.1, STACKED]).flat_map(move |Behind { corridor: m, .. }| {
+            self.others(n, 1, [DEPTH.1, STACKED]).into_iter().flat_map(move |Behind { corridor: m, .. }| {
                 let across = [own.across[1], strips[m].across[0]];
                 let along = shared(extents[n], extents[m]);
                 let pieces = self.uncrossed(own.direction, across, vec![(along[0], along[1])]).into_iter();
-                pieces.map(move |along| Row { direction: own.direction, along, across, between: Some([n, m]) })
+                let row = move |along| Row { direction: own.direction, along, across, between: Some([n, m]) };
+                pieces.map(row).filter(|row| !self.has_way(row)).map(move |row| ([n, m], row))
             })
         };
+        let (pairs, rows): (Vec<_>, Vec<_>) = (0..strips.len()).flat_map(pieces).unzip();
+        let is_stacked = stacked::are_stacked(self.views, &rows);
         let mut found: BTreeMap<_, Vec<_>> = BTreeMap::new();
-        for row in stacked::find(self.views, (0..strips.len()).flat_map(rows).collect()) {
-            if self.with_bays && self.views[row.direction].pitch_of(&row).is_none() {
-                continue;
+        for (pair, row) in pairs.into_iter().zip(rows).zip(is_stacked).filter_map(|(row, is)| is.then_some(row)) {
+            if !self.with_bays || self.views[row.direction].pitch_of(&row).is_some() {
+                found.entry(pair).or_default().push(row.along);
             }
-            found.entry(row.between.unwrap_or_default()).or_default().push(row.along);
         }
         found
+    }
+
+    /// True when a corridor runs along a row within it.
+    fn has_way(&self, row: &Row) -> bool {
+        let near = self.placed[row.direction].touching(row.along, row.across).into_iter();
+        near.filter(|&n| overlap(self.extents[n], row.along) >= WAY).any(|n| holds(row.across, self.strips[n].middle()))
     }
 
     /// A row from face to face, without so much behind those of its faces along which no corridor runs, metres.
@@ -218,12 +231,7 @@ impl<'a> Crossings<'a> {
 
     /// What lies between neighbouring corridors and is too thin for a row; their sides may lie a little within one another.
     pub fn walls(&self) -> Vec<Row> {
-        let near = |n| {
-            let mut near: Vec<Behind> = self.others(n, 1, [-SAME, SHALLOW]).collect();
-            near.sort_by(|a, b| a.depth.total_cmp(&b.depth));
-            near
-        };
-        self.so_deep(near, |depth| depth < SHALLOW)
+        self.so_deep(|n| self.others(n, 1, [-SAME, SHALLOW]), |depth| depth < SHALLOW)
     }
 
     /// What lies between neighbouring corridors and is as deep as is asked for.

@@ -313,7 +313,8 @@ impl Plan {
     }
 
     fn find_racks(&self, views: &[Turned], on_legs: &[Row], standing: &Standing, threads: usize) -> Vec<Row> {
-        whole::find(views, &self.strips, &self.extents, [&self.rows, on_legs], standing, threads)
+        let rows = racks::with_bays(views, &self.strips, &self.extents, &self.rows, threads);
+        whole::find(views, &self.strips, &self.extents, [&rows, on_legs], standing, threads)
     }
 
     fn new(views: &[Turned], strips: Vec<Strip>, threads: usize) -> Self {

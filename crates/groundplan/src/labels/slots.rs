@@ -52,11 +52,14 @@ pub fn without(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
         }
         let is_closed = |ends: [f64; 2]| view.mean_blocked(view.columns(ends), own.across[0], own.across[1]) > CLUTTER;
         let opens = [own.along[0] - before[1] <= MOUTH, behind[0] - own.along[1] <= MOUTH];
+        // Where nothing stands between its end and an aisle it leads on to that.
+        let between = [[before[1], own.along[0]], [own.along[1], behind[0]]];
+        let leads = [0, 1].map(|side| opens[side] || !is_closed(between[side]));
         let is_narrower = |width: f64| own.width() < NARROWER * width;
         behind[0] - before[1] <= DEEPEST
-            && match opens {
-                [true, false] => is_narrower(one) && is_closed([own.along[1], behind[0]]),
-                [false, true] => is_narrower(two) && is_closed([before[1], own.along[0]]),
+            && match leads {
+                [true, false] => is_narrower(one),
+                [false, true] => is_narrower(two),
                 [true, true] => {
                     own.width() < WIDTH.0
                         && is_narrower(one.min(two))

@@ -8,37 +8,38 @@ use crate::ends::wider;
 
 /// So deep a stacked row is at most, metres.
 pub const STACKED: f64 = 6.0;
-/// No lane that is so wide, metres, is free over more than that share of its length; and in each that is as wide as the other
-/// something stands over that share at least.
+/// Lanes of the one width, metres, are an aisle where they are free over more than that share of their length.
 const FREE: (f64, f64) = (1.6, 0.5);
+/// Of lanes of the one width, metres, nothing is known where something stands in them over less than that share.
 const EMPTY: (f64, f64) = (1.2, 0.1);
 /// Lanes are tried no farther apart, metres.
 const STEP: f64 = 0.4;
-/// A wall between two rooms leads over so much of the way from face to face and is no thicker, metres; of rows of one depth there
-/// are so many for a metre at least: of rooms there are .22 at least, of racks .13 at most.
+/// A wall between two rooms leads over so much of the way from face to face and is no thicker, metres, but for a cell; of rows of
+/// one depth there are so many for a metre: in drawn hotels .22 at least, in halls with racks .13 at most.
 const LEADS: f64 = 0.7;
-const THICK: f64 = 0.45;
+const THICK: f64 = 0.55;
 const ROOMS: f64 = 0.18;
 /// What stands so near to a face is of it, metres.
 const FACE: f64 = 0.3;
 
-/// Of what lies between two corridors, and is deeper than other rows are, the stacked rows.
-pub fn find(views: &[Turned], rows: Vec<Row>) -> Vec<Row> {
-    let stacked: Vec<Row> = rows.into_iter().filter(|row| is_stacked(&views[row.direction], row)).collect();
-    let walls: Vec<usize> = stacked.iter().map(|row| walls_within(&views[row.direction], row)).collect();
+/// Which of some rows, all deeper than others are, are stacked.
+pub fn are_stacked(views: &[Turned], rows: &[Row]) -> Vec<bool> {
+    let are_filled: Vec<bool> = rows.iter().map(|row| is_filled(&views[row.direction], row)).collect();
+    let filled = || rows.iter().zip(&are_filled).filter(|(_, is_filled)| **is_filled).map(|(row, _)| row);
+    let walls: Vec<(&Row, usize)> = filled().map(|row| (row, walls_within(&views[row.direction], row))).collect();
     let are_rooms = |row: &Row| {
         let (mut count, mut length) = (0, 0.0);
-        for (other, walls) in stacked.iter().zip(&walls).filter(|(other, _)| are_alike(row, other)) {
+        for (other, walls) in walls.iter().filter(|(other, _)| are_alike(row, other)) {
             count += walls;
             length += other.length();
         }
         count as f64 >= ROOMS * length
     };
-    stacked.iter().filter(|row| !are_rooms(row)).cloned().collect()
+    rows.iter().zip(&are_filled).map(|(row, is_filled)| *is_filled && !are_rooms(row)).collect()
 }
 
 /// True when in all lanes along a row something stands, and none is free.
-fn is_stacked(view: &Turned, row: &Row) -> bool {
+fn is_filled(view: &Turned, row: &Row) -> bool {
     let columns = view.columns(row.along);
     let any_lane = |width: f64, is_lane: &dyn Fn([f64; 2]) -> bool| {
         let rest = row.depth() - width;
@@ -59,5 +60,5 @@ fn walls_within(view: &Turned, row: &Row) -> usize {
     let [low, high] = wider(row.across, -FACE);
     let occupied = view.some_occupied(view.columns(row.along), low, high);
     let leads: Vec<bool> = occupied.iter().map(|share| *share > LEADS).collect();
-    runs(&leads, true).into_iter().filter(|(from, to)| (to - from) as f64 * view.cell <= THICK).count()
+    runs(&leads, true).into_iter().filter(|(from, to)| (to - from) as f64 * view.cell <= THICK + view.cell).count()
 }

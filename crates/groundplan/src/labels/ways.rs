@@ -118,8 +118,7 @@ impl<'a> Context<'a> {
     }
 
     /// True when a strip is no wider than a bay, or as wide as some, and beside it, nearer than racks are deep, one that is left
-    /// leads through the same single row, or past the ends of the same rows: of all rows these are the last bays, but where bars
-    /// part them.
+    /// leads through the same single row, or past the ends of the same rows.
     fn is_last_bay(&self, n: usize, left: &[bool]) -> bool {
         let own = &self.place.passing[n];
         let is_beside = |m: usize| {
@@ -130,7 +129,6 @@ impl<'a> Context<'a> {
             && !own.is_led_on
             && self.place.is_as_bays(own, self.strips[n].width())
             && self.beside(n, DEPTH.0).any(is_beside)
-            && !(own.is_whole() && self.bars.part(n))
     }
 }
 
