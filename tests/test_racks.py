@@ -220,6 +220,21 @@ def test_empty_bays_of_a_rack_at_a_wall_part_it_nowhere_be_two_of_them_before_a_
     assert np.array(at_the_wall(picture)) == pytest.approx(np.array([[4.0, 36.3]]), abs=0.3)
 
 
+@pytest.mark.parametrize("depth", [2.2, 4.4])
+def test_two_rows_along_which_bays_recur_are_racks(depth: float) -> None:
+    draws = np.random.default_rng(3)
+
+    def boxes() -> Iterator[Box]:
+        for y in (3.2, 6.4 + depth):
+            posts = (4.0 + 2.8 * n for n in range(13))
+            yield from ((x, low, x + 0.1, low + 0.1) for x in posts for low in np.linspace(y, y + depth - 0.1, 3))
+            places = (4.15 + 2.8 * n + 0.87 * m for n in range(12) for m in range(3))
+            yield from ((x, y, x + 0.8, y + depth) for x in places if draws.random() > 0.1)
+
+    survey = groundplan.survey(drawn(41.7, 9.6 + 2 * depth, boxes()), resolution=0.05)
+    assert [rack["width"] for rack in survey.of_kind("rack")] == pytest.approx([depth] * 2, abs=0.2)
+
+
 def stacks(depth: float, empty: float) -> Picture:
     """Three rows of pallets, two one behind another, with a way of 3.2 m through their middles."""
     draws = np.random.default_rng(3)

@@ -24,6 +24,8 @@ pub const WAY_IN: f64 = 0.5;
 /// A place has racks when it has so many, and so many metres of them for a metre of corridor: of offices that were looked at
 /// what lies between corridors is .28 at most, of warehouses .31 at least (docs/approaches.md).
 const PLACE: (usize, f64) = (3, 0.29);
+/// So many between two corridors are enough where bays recur along them.
+const WITH_BAYS: usize = 2;
 
 /// The rows between the corridors and at the outer sides of them, the longest first.
 pub fn find(views: &[Turned], strips: &[Strip], extents: &[[f64; 2]], threads: usize) -> Vec<Row> {
@@ -78,10 +80,12 @@ fn find_by(views: &[Turned], strips: &[Strip], crossings: &Crossings, threads: u
 
 /// True where rows are racks: in an office, what lies between two corridors are rooms. With where each corridor begins
 /// and ends, along.
-pub fn are_here(rows: &[Row], corridors: &[[f64; 2]]) -> bool {
+pub fn are_here(views: &[Turned], rows: &[Row], corridors: &[[f64; 2]]) -> bool {
+    let has_bays = |row: &&Row| row.between.is_some() && views[row.direction].pitch_of(row).is_some();
+    let are_several = || rows.len() >= PLACE.0 || rows.iter().filter(has_bays).count() >= WITH_BAYS;
     let length = |ends: &[f64; 2]| ends[1] - ends[0];
     let racks: f64 = rows.iter().map(|row| length(&row.along)).sum();
-    rows.len() >= PLACE.0 && racks >= PLACE.1 * corridors.iter().map(length).sum::<f64>()
+    are_several() && racks >= PLACE.1 * corridors.iter().map(length).sum::<f64>()
 }
 
 /// Share of a row's length on which structure lies on one of its view's lines.

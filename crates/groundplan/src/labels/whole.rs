@@ -53,7 +53,7 @@ pub fn find(
 ) -> Vec<Row> {
     let mut known = without_walls(views, rows);
     known.extend(at_walls::past_which_ways_lead(views, strips, extents, &known, threads));
-    if racks::are_here(&known, extents) && racks::are_here(&of_a_kind(&known), extents) {
+    if racks::are_here(views, &known, extents) && racks::are_here(views, &of_a_kind(&known), extents) {
         known.extend(at_walls::of_goods(views, strips, extents, &known, threads));
     } else {
         known.clear();
