@@ -1,7 +1,7 @@
 //! What lies along one direction by its places, in buckets to which more can be put: what may touch a piece is found
 //! without asking all.
 
-use super::turned::Turned;
+use super::view::turned::Turned;
 
 /// Sides of a bucket along and across, metres: corridors and rows are much longer than wide.
 const SIDES: [f64; 2] = [16.0, 8.0];

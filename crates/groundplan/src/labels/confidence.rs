@@ -2,9 +2,9 @@
 //! to 1 (nothing against it). Each kind has its own question; the map itself is asked, not the steps that led to the
 //! label, so that two ways to find a label are held to one measure. Racks bear witness for those that are as deep.
 
-use super::blocks::as_deep;
 use super::looks::{Looks, STEP, along, frame_of};
 use super::recall::Key;
+use super::rows::blocks::as_deep;
 use super::{Evidence, JunctionKind, Label};
 use crate::bands::map_each;
 use crate::grid::State;

@@ -1,7 +1,7 @@
 //! The map asked place by place: what is free, what stands about a face, and how far posts come back along one.
 
-use super::patches::Area;
-use super::runs::runs;
+use super::view::patches::Area;
+use super::view::runs::runs;
 use crate::grid::{Grid, State};
 use crate::subdivision::distance;
 use std::cell::Cell;

@@ -1,7 +1,7 @@
 //! Regular patterns among the labels: what recurs, at which pitch, and from where.
 
 use super::Label;
-use super::pillars;
+use super::posts::pillars;
 use crate::directions::Directions;
 use crate::grid::tidy;
 

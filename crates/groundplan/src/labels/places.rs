@@ -2,7 +2,7 @@
 //! appears, goes or is cut in two renames nothing else.
 
 use super::Evidence;
-use super::turned::Turned;
+use super::view::turned::Turned;
 use crate::bands::map_each;
 use std::f64::consts::FRAC_PI_2;
 

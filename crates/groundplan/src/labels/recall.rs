@@ -5,13 +5,13 @@
 //! A survey looks into what another one kept before it looks at the pixels, so the answer is the same with and without.
 
 use super::corridors::Strip;
-use super::patches::{Area, Patches};
-use super::period::Period;
+use super::corridors::stretches;
+use super::posts::period::Period;
 use super::rooms::{Bar, Part, Width};
 use super::rows::Row;
-use super::squares::Band;
-use super::stretches;
-use super::sums::Told;
+use super::view::patches::{Area, Patches};
+use super::view::squares::Band;
+use super::view::sums::Told;
 use crate::bits::{Bits, WORD, lowest};
 use crate::grid::Grid;
 use std::collections::HashMap;

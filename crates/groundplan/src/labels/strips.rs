@@ -1,18 +1,19 @@
 //! II-E, the successor of Algorithm 1: labels from a sketch and the faces that lie in what it shows.
 
-use super::bays;
 use super::corridors::Strip;
-use super::meeting::Meeting;
+use super::junctions::meeting::Meeting;
 use super::names::{Named, names};
 use super::near::Near;
-use super::period::Period;
-use super::pillars;
+use super::outline;
 use super::places::{Placed, Squares};
+use super::posts::bays;
+use super::posts::period::Period;
+use super::posts::pillars;
 use super::rooms::{self, Racked, Raster};
 use super::rows::Row;
 use super::sketch::{Plan, Sketch};
-use super::turned::Turned;
-use super::{Division, Evidence, JunctionKind, Label, outline};
+use super::view::turned::Turned;
+use super::{Division, Evidence, JunctionKind, Label};
 use crate::bands::side_by_side;
 use crate::ends::{sorted, wider};
 use crate::grid::{State, tidy};

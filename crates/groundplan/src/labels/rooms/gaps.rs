@@ -1,8 +1,8 @@
 //! Gaps in walls: where a line of the map is free between structure that lies along it.
 
 use super::super::Evidence;
-use super::super::patches::Patches;
 use super::super::recall::Key;
+use super::super::view::patches::Patches;
 use super::raster::Raster;
 use crate::bands::map_each;
 use crate::ends::around;

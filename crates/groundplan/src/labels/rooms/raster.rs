@@ -1,7 +1,7 @@
 //! The free space as a raster with a border of its own.
 
-use super::super::patches::Area;
 use super::super::recall::{Key, Recall};
+use super::super::view::patches::Area;
 use super::islands::{self, Islands};
 use crate::bands::map_bands;
 use crate::bits::{Bits, WORD, Wanted, lowest};

@@ -1,0 +1,209 @@
+//! What opens into a way between the ends of two rows or of two walls, as far as it was seen: a place to turn into.
+
+use super::stretches;
+use crate::bits::{Bits, WORD, lowest};
+use crate::ends::{sorted, wider};
+use crate::labels::corridors::Strip;
+use crate::labels::junctions::shut;
+use crate::labels::rows::Row;
+use crate::labels::rows::sections::{BAY, WIDTH};
+use crate::labels::view::runs::runs;
+use crate::labels::view::turned::Turned;
+use crate::labels::ways::across::square_to;
+use crate::parameters::Parameters;
+use std::ops::Range;
+
+/// It is so deep at least, metres, and so many times as deep as wide; and is looked into no farther than that.
+const DEEP: (f64, f64) = (2.0, 0.5);
+const LOOK: f64 = 8.0;
+/// The rows beside it end no farther than this from the side of what leads past them, and its sides are as near to their
+/// corners, metres.
+const END: f64 = 0.5;
+const CORNER: f64 = 0.3;
+/// Where the first bay of a row is empty that is so deep at most, in depths of what opens, and metres.
+const SHALLOW: (f64, f64) = (0.5, 1.9);
+/// A row has so many bays at least.
+const BAYS: f64 = 2.0;
+/// A cell of which more than this share is not free is none of it.
+const TAKEN: f64 = 0.5;
+/// At a frontier something stands in no more than this share of it.
+const SHUT: f64 = 0.3;
+/// From so far within a side to so far beyond, metres, something stands over so much of what holds it.
+const SIDE: f64 = 0.3;
+const SIDED: f64 = 0.4;
+/// What lies from so far beyond a side to so far, metres, is not free where it is held.
+const BESIDE: (f64, f64) = (0.1, 0.5);
+
+/// What opens into a way.
+pub struct Opening {
+    /// From that one's side as far as is free.
+    pub way: Strip,
+    /// Where that one's middle lies, along.
+    pub middle: f64,
+    /// Over so much of that each of its sides is held, metres, and over so much something stands there.
+    pub held: [f64; 2],
+    pub stands: [f64; 2],
+    /// It ends at a frontier: nothing stands there.
+    pub is_frontier: bool,
+}
+
+/// From post to post along each direction, metres, where rows run along it: other than these nothing has bays.
+pub fn pitches(views: &[Turned], rows: &[Row]) -> Vec<Option<f64>> {
+    let longest =
+        |view: &Turned| rows.iter().filter(|row| row.direction == view.direction).map(Row::length).fold(0.0, f64::max);
+    views.iter().map(|view| view.pitch.filter(|pitch| longest(view) >= BAYS * pitch)).collect()
+}
+
+/// What opens into a way from one side or the other, square to it, where these are the pitches of all directions.
+pub fn of(views: &[Turned], way: &Strip, pitches: &[Option<f64>], parameters: &Parameters) -> Vec<Opening> {
+    let (view, pitch) = (&views[way.direction], pitches[way.direction]);
+    let Some(other) = square_to(views, way.direction) else { return Vec::new() };
+    [0, 1].into_iter().flat_map(|side| Passing { view, other, way, side, pitch, parameters }.openings()).collect()
+}
+
+/// A way past the ends of rows on one of its sides.
+struct Passing<'a> {
+    view: &'a Turned,
+    other: &'a Turned,
+    way: &'a Strip,
+    side: usize,
+    /// From post to post along it, metres, where there are such.
+    pitch: Option<f64>,
+    parameters: &'a Parameters,
+}
+
+impl Passing<'_> {
+    fn openings(&self) -> Vec<Opening> {
+        let columns = self.free();
+        let depths = self.depths(&columns);
+        let deep: Vec<bool> = depths.iter().map(|depth| self.metres(*depth) >= DEEP.0).collect();
+        let opens = |&(from, to): &(usize, usize)| {
+            self.is_wide_as_way(to - from) && self.has_corners(&columns, &depths, from..to)
+        };
+        let open = runs(&deep, true).into_iter().filter(opens);
+        open.filter_map(|(from, to)| self.opening(columns.start + from..columns.start + to, &depths[from..to]))
+            .collect()
+    }
+
+    /// So many cells, metres.
+    fn metres(&self, cells: usize) -> f64 {
+        cells as f64 * self.view.cell
+    }
+
+    /// It is looked into so many cells deep.
+    fn most(&self) -> usize {
+        (LOOK / self.view.cell) as usize
+    }
+
+    /// The columns in which the way is free, with those beyond its ends.
+    fn free(&self) -> Range<usize> {
+        let [low, high] = shut::inner(self.way);
+        let most = self.parameters.labels_max_width;
+        let [first, last] = self.way.along.map(|u| self.view.column(u));
+        let [from, to] = wider(self.way.along, most).map(|u| self.view.column(u));
+        let taken = |columns: Range<usize>| self.view.some_blocked(columns, low, high);
+        let before = taken(from..first).iter().rev().take_while(|share| **share <= TAKEN).count();
+        let after = taken(last..to + 1).iter().take_while(|share| **share <= TAKEN).count();
+        first - before..last + after
+    }
+
+    /// From so many cells beyond the side to one more.
+    fn beyond(&self, cells: usize) -> [f64; 2] {
+        let outwards = if self.side == 0 { -1.0 } else { 1.0 };
+        sorted([cells, cells + 1].map(|cells| self.way.across[self.side] + outwards * self.metres(cells)))
+    }
+
+    /// How many cells beyond the side are free of each of some columns.
+    fn depths(&self, columns: &Range<usize>) -> Vec<usize> {
+        let count = columns.len();
+        let mut depths = vec![self.most(); count];
+        let mut known = Bits::new(count);
+        for cells in 0..self.most() {
+            let [low, high] = self.beyond(cells);
+            let taken = self.view.blocked_where(columns.clone(), low, high, |share| share > TAKEN);
+            for word in (0..count).step_by(WORD) {
+                let mut first = taken.word(word) & !known.word(word) & lowest(count - word);
+                while first != 0 {
+                    depths[word + first.trailing_zeros() as usize] = cells;
+                    first &= first - 1;
+                }
+            }
+            known |= &taken;
+            if known.count(0..count) == count {
+                break;
+            }
+        }
+        depths
+    }
+
+    /// So many columns are as wide as a way, and wider than a bay of a row along the way past them.
+    fn is_wide_as_way(&self, columns: usize) -> bool {
+        let width = self.metres(columns);
+        (self.parameters.labels_min_width.max(WIDTH.0)..=self.parameters.labels_max_width).contains(&width)
+            && self.pitch.is_none_or(|pitch| width > BAY * pitch)
+    }
+
+    /// True when at either side of some columns, of which the way's are given, a row ends, be its first bay empty, or the way
+    /// itself does, at a wall.
+    fn has_corners(&self, all: &Range<usize>, depths: &[usize], open: Range<usize>) -> bool {
+        let near = (CORNER / self.view.cell).ceil() as usize;
+        let least = END.max(SHALLOW.1.min(SHALLOW.0 * self.metres(median(&depths[open.clone()]))));
+        let is_corner = |beside: Range<usize>, end: usize| {
+            if beside.is_empty() {
+                return shut::is_shut_at(self.view, self.way, end);
+            }
+            depths[beside].iter().any(|depth| self.metres(*depth) <= least)
+        };
+        is_corner(open.start.saturating_sub(near)..open.start, all.start)
+            && is_corner(open.end..(open.end + near).min(depths.len()), all.end)
+    }
+
+    /// What opens through some columns, where it is deep enough.
+    fn opening(&self, columns: Range<usize>, depths: &[usize]) -> Option<Opening> {
+        let cells = median(depths);
+        let (depth, width) = (self.metres(cells), self.metres(columns.len()));
+        if depth < DEEP.1 * width {
+            return None;
+        }
+        let stands = |(column, depth): (usize, &usize)| {
+            let [low, high] = wider(self.beyond(*depth), self.view.cell);
+            self.view.occupied(column, low, high) > 0.0
+        };
+        let shut = columns.clone().zip(depths).filter(|&at| stands(at)).count();
+        let sides = [columns.start, columns.end].map(|column| self.view.along(column));
+        let end = self.beyond(cells)[usize::from(self.side == 0)];
+        let corners = [[sides[0], self.way.across[self.side]], [sides[1], end]];
+        let [one, two] = corners.map(|place| self.other.place(self.view.to_map(place)));
+        let [along, across] = [0, 1].map(|axis| sorted([one[axis], two[axis]]));
+        let middle = self.other.place(self.view.to_map([sides[0], self.way.middle()]))[0];
+        let [held, stands] = self.held(along, across);
+        Some(Opening {
+            way: stretches::ragged(self.other, along, across, depth),
+            middle,
+            held,
+            stands,
+            is_frontier: cells < self.most() && shut as f64 <= SHUT * depths.len() as f64,
+        })
+    }
+
+    /// Over how much of it each side is held, metres: something stands there and what lies beyond is not free; and over how
+    /// much something stands.
+    fn held(&self, along: [f64; 2], across: [f64; 2]) -> [[f64; 2]; 2] {
+        let last = self.other.size[0];
+        let columns = self.other.border(along[0]).min(last)..self.other.border(along[1]).min(last);
+        let of_side = |(side, outwards): (f64, f64)| {
+            let [low, high] = sorted([BESIDE.0, BESIDE.1].map(|metres| side + outwards * metres));
+            let held = self.other.blocked_where(columns.clone(), low, high, |share| share > TAKEN);
+            let held = held.count(0..columns.len()) as f64 * self.other.cell;
+            let stands = self.other.share_touched(columns.clone(), side - SIDE, side + SIDE) * (along[1] - along[0]);
+            [if stands >= SIDED * held { held } else { 0.0 }, stands]
+        };
+        let [low, high] = [(across[0], -1.0), (across[1], 1.0)].map(of_side);
+        [0, 1].map(|n| [low[n], high[n]])
+    }
+}
+
+/// Of some numbers that which half of the others are no more than.
+fn median(numbers: &[usize]) -> usize {
+    *numbers.to_vec().select_nth_unstable(numbers.len() / 2).1
+}

@@ -1,0 +1,157 @@
+//! Regular patterns: the spatial frequency with which posts recur along the lines of one direction, which the paper
+//! leaves as future work.
+
+use super::lags::{CONTRAST, COUNTED, Counts, FIRST, LAST, Parts, STEP, all_below, clear, pairs};
+use crate::bands::{fold, worth};
+use crate::ends::{sorted, wider};
+use crate::gradients::SPECK;
+use crate::labels::Evidence;
+use crate::labels::rows::Row;
+use crate::labels::view::turned::Turned;
+use crate::on_line::OnLine;
+use std::sync::Arc;
+
+/// Specks this near to a line stand on it, metres.
+const NEAR: f64 = 0.12;
+/// Lines with fewer specks say nothing.
+const FEWEST: usize = 8;
+/// What lies beside a line from so far to so far off it, metres, is floor where this share or less of it is not free,
+/// and a row where that share or more is not: posts that recur across the rows have both on both sides.
+const BESIDE: (f64, f64) = (0.15, 0.55);
+const FACE: (f64, f64) = (0.1, 0.5);
+/// Of what recurs along faces at least this share of the pairs has a row beside it from one to the other, and of those twice
+/// as far apart: fewer where most bays are empty, and next to none of what recurs across the rows.
+const ALONG: [f64; 2] = [0.15, 0.025];
+/// What lies in parts of the view no further from a row, metres, is about it.
+const ABOUT: f64 = 4.0;
+/// A pitch recurs about a row where more than chance are so far apart by as many of its deviations.
+const RECURS: f64 = 2.0;
+/// Two of one pitch are another to so many steps.
+const HALVES: f64 = 2.0;
+
+/// From post to post along the rows of a direction.
+pub struct Pitch {
+    /// Of all together, metres.
+    pub common: f64,
+    /// Where the view, and with it the first part, begins, metres.
+    start: [f64; 2],
+    parts: Parts,
+    /// Which lags recur along faces.
+    along: Vec<bool>,
+}
+
+impl Pitch {
+    /// Of the rows about one, metres: halls have bays of their own. Where neither the common pitch recurs nor any other, no
+    /// posts tell bays there.
+    pub fn about(&self, row: &Row) -> Option<f64> {
+        let steps = |ends: [f64; 2], axis: usize| {
+            wider(ends, ABOUT).map(|place| ((place - self.start[axis]) / STEP).floor() as i32)
+        };
+        let counts = self.parts.within(steps(row.along, 0), steps(row.across, 1));
+        let own = counts.pitch(&self.along);
+        let lag = (self.common / STEP).round() as usize;
+        if !(FIRST..=LAST).contains(&lag) || counts.excess(1, lag).1 >= RECURS {
+            // What is common may be two bays where posts of another hall say so.
+            return own.filter(|own| (self.common - 2.0 * own).abs() <= HALVES * STEP).or(Some(self.common));
+        }
+        own
+    }
+}
+
+/// The columns of a speck on a line, and what is not free on either side of the line before its column and up to its end.
+struct Speck {
+    column: usize,
+    sums: [[f64; 2]; 2],
+}
+
+/// How far it is from post to post along the lines of the view's direction, where there is a pattern: the first strong peak
+/// of the specks' autocorrelation, summed over the lines.
+pub fn find(evidence: &Evidence, view: &Turned) -> Option<Pitch> {
+    let mut lines = specks(evidence, view);
+    lines.retain(|(_, places)| places.len() >= FEWEST);
+    let mut parts = Parts::default();
+    for (offset, places) in &lines {
+        parts.add(((offset - view.start[1]) / STEP).floor() as i32, places);
+    }
+    let counts = parts.all();
+    let all = counts.all();
+    // Where nothing recurs it need not be asked whether it is along faces.
+    if all.iter().all(|lag| clear(*lag) < CONTRAST) {
+        return None;
+    }
+    let of_line = |n: usize| {
+        let (offset, places) = &lines[n];
+        let beside = [offset - BESIDE.1, offset + BESIDE.1];
+        let key = || view.key_of_cells(view.key_on_line(evidence, *offset), beside);
+        evidence.recall.faced.or_find(key, || Arc::new(along_faces(view, *offset, places)))
+    };
+    let add = |sums: &mut Vec<u32>, more: &[u32]| sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+    let threads = worth(view.size[0] * view.size[1], evidence.threads);
+    let empty = || vec![0; COUNTED.end];
+    let faces = fold(lines.len(), threads, empty, |sums, n| add(sums, &of_line(n)), |sums, more| add(sums, &more));
+    let faces = Counts::new(faces.into_iter().map(f64::from).collect());
+    let is_along =
+        |n: usize| (0..2).all(|twice| faces.excess(twice + 1, FIRST + n).0 >= ALONG[twice] * all[n][twice].0);
+    let along: Vec<bool> = (0..all.len()).map(is_along).collect();
+    let common = counts.pitch(&along)?;
+    Some(Pitch { common, start: view.start, parts, along })
+}
+
+/// How many pairs of specks on a line, of those so far apart, are as many steps apart with a row beside them.
+fn along_faces(view: &Turned, offset: f64, places: &[i32]) -> Vec<u32> {
+    let beside = [-1.0, 1.0].map(|side| taken(view, offset, side));
+    let speck = |&place: &i32| {
+        let column = view.column(view.start[0] + f64::from(place) * STEP);
+        Speck { column, sums: [column, column + 1].map(|n| beside.each_ref().map(|sums| sums[n])) }
+    };
+    let specks: Vec<Speck> = places.iter().map(speck).collect();
+    let mut faces = vec![0; COUNTED.end];
+    pairs(places, places.len(), |lag, [one, other]| {
+        if is_face(&specks[one], &specks[other]) {
+            faces[lag] += 1;
+        }
+    });
+    faces
+}
+
+/// Places of all specks along and across the view's direction, metres.
+pub fn specks_of<'a>(evidence: &'a Evidence, view: &'a Turned) -> impl Iterator<Item = [f64; 2]> + 'a {
+    let frame = &evidence.grid.frame;
+    let specks = evidence.gradients.iter().filter(|(_, _, magnitude)| *magnitude <= SPECK);
+    specks.map(|(pixel, ..)| view.place(frame.to_metres(pixel.map(|p| f64::from(p) + 0.5))))
+}
+
+/// For each line of the direction, the steps along it at which specks stand, ascending.
+fn specks(evidence: &Evidence, view: &Turned) -> Vec<(f64, Vec<i32>)> {
+    let lines = evidence.lines;
+    let mut offsets: Vec<f64> = (0..lines.len())
+        .filter(|&n| lines.directions[n] as usize == view.direction)
+        .map(|n| lines.offsets[n])
+        .collect();
+    offsets.sort_by(f64::total_cmp);
+    let mut places = vec![Vec::new(); offsets.len()];
+    let near = OnLine::new(&offsets, NEAR);
+    specks_of(evidence, view).for_each(|[u, v]| {
+        for line in &mut places[near.at(v)] {
+            line.push(((u - view.start[0]) / STEP) as i32);
+        }
+    });
+    for line in &mut places {
+        line.sort_unstable();
+        line.dedup();
+    }
+    offsets.into_iter().zip(places).collect()
+}
+
+/// What is not free on one side of a line: the columns' shares, summed up from the first.
+fn taken(view: &Turned, offset: f64, side: f64) -> Vec<f64> {
+    let [low, high] = sorted([offset + side * BESIDE.0, offset + side * BESIDE.1]);
+    all_below(&view.all_blocked(low, high))
+}
+
+/// True when a row lies on one side of the line from one speck to another, and free floor on the other.
+fn is_face(one: &Speck, other: &Speck) -> bool {
+    let columns = (other.column + 1 - one.column) as f64;
+    let [left, right] = [0, 1].map(|side| (other.sums[1][side] - one.sums[0][side]) / columns);
+    left <= FACE.0 && right >= FACE.1 || right <= FACE.0 && left >= FACE.1
+}

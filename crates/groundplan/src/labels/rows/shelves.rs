@@ -1,0 +1,106 @@
+//! What of a row of racks is open, by its columns, and where something stands along its faces.
+
+use super::sections::{FACE, LEFT};
+use crate::labels::rows::Row;
+use crate::labels::view::runs::{Run, common, length, outside, runs};
+use crate::labels::view::turned::Turned;
+use std::cell::OnceCell;
+use std::ops::Range;
+
+/// So many columns on either side of what is open are of its ends.
+pub const ENDS: usize = 2;
+
+/// A row, and from which to which of its columns what is open.
+pub struct Shelves {
+    pub row: Row,
+    /// Which of the view's columns it has.
+    columns: Range<usize>,
+    /// Of each half.
+    pub halves: [Vec<Run>; 2],
+    /// Where something stands at each face, once it is asked.
+    faces: OnceCell<[Vec<Run>; 2]>,
+}
+
+impl Shelves {
+    pub fn new(view: &Turned, row: &Row) -> Self {
+        let columns = view.column(row.along[0])..view.column(row.along[1]);
+        let middle = f64::midpoint(row.across[0], row.across[1]);
+        let halves = [[row.across[0], middle], [middle, row.across[1]]].map(|[low, high]| {
+            let blocked = view.blocked_where(columns.clone(), low, high, |share| share > LEFT);
+            runs(&(0..columns.len()).map(|n| !blocked.get(n)).collect::<Vec<_>>(), true)
+        });
+        Self { row: row.clone(), columns, halves, faces: OnceCell::new() }
+    }
+
+    /// How many columns it has.
+    pub fn count(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Where it is open from aisle to aisle.
+    pub fn open(&self) -> Vec<Run> {
+        common(&self.halves[0], &self.halves[1])
+    }
+
+    /// True of what is open up to an end of the row.
+    pub fn is_end(&self, (from, to): Run) -> bool {
+        from == 0 || to == self.count()
+    }
+
+    /// The row but for where it is open from aisle to aisle at some width, and past its ends.
+    pub fn elsewhere(&self, view: &Turned, is_as_wide: impl Fn(usize) -> bool) -> Elsewhere<'_> {
+        // Past its ends nothing stands, in empty bays there do posts.
+        let is_left_out = |&(from, to): &Run| {
+            if !self.is_end((from, to)) {
+                return is_as_wide(to - from);
+            }
+            let within = [(from + ENDS, to.saturating_sub(ENDS))];
+            let stands = |face: &[Run]| !common(face, &within).is_empty();
+            !self.faces(view).iter().any(|face| stands(face))
+        };
+        let left_out: Vec<Run> = self.open().into_iter().filter(is_left_out).collect();
+        let open = left_out.iter().filter(|run| !self.is_end(**run)).count();
+        let wider = |(from, to): Run| (from.saturating_sub(ENDS), (to + ENDS).min(self.count()));
+        Elsewhere { shelves: self, open, left_out: left_out.into_iter().map(wider).collect() }
+    }
+
+    /// Where something stands at each face.
+    pub fn faces(&self, view: &Turned) -> &[Vec<Run>; 2] {
+        self.faces.get_or_init(|| {
+            self.row.across.map(|face| {
+                let stands = view.some_occupied(self.columns.clone(), face - FACE, face + FACE);
+                runs(&stands.into_iter().map(|share| share > 0.0).collect::<Vec<_>>(), true)
+            })
+        })
+    }
+}
+
+/// A row but for some places at which it is open.
+pub struct Elsewhere<'a> {
+    pub shelves: &'a Shelves,
+    /// How many they are, without those past its ends.
+    pub open: usize,
+    /// Each with what is of its ends.
+    left_out: Vec<Run>,
+}
+
+impl Elsewhere<'_> {
+    /// How many columns there are elsewhere.
+    pub fn columns(&self) -> usize {
+        length(outside(&[(0, self.shelves.count())], &self.left_out))
+    }
+
+    /// Over how many columns, of both halves, a half is open there for so many one after another.
+    pub fn free(&self, least: f64) -> usize {
+        let of_half = |half: &Vec<Run>| {
+            let open = outside(half, &self.left_out);
+            length(open.into_iter().filter(|(from, to)| (to - from) as f64 >= least))
+        };
+        self.shelves.halves.iter().map(of_half).sum()
+    }
+
+    /// At how many columns, of both faces, something stands there.
+    pub fn stands(&self, view: &Turned) -> usize {
+        self.shelves.faces(view).iter().map(|face| length(outside(face, &self.left_out))).sum()
+    }
+}

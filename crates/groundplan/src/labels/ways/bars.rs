@@ -1,0 +1,333 @@
+//! Bars across the ends of rows: where they stand there, and seldom beside empty bays, what lies between two of them is a way,
+//! be it as wide as bays and through one row alone, and what has none is a bay.
+
+use super::lead::Lead;
+use super::passing::Place;
+use super::walled;
+use crate::ends::{holds, overlap, wider};
+use crate::labels::Evidence;
+use crate::labels::corridors::Strip;
+use crate::labels::junctions::meeting::CLUTTER;
+use crate::labels::rows::SHORTEST;
+use crate::labels::rows::sections::{Columns, SIDE};
+use crate::labels::view::look::Look;
+use std::cell::OnceCell;
+use std::iter::{self, Sum};
+
+/// What is so near to a way's sides is of that, metres, and a wall so near to a row's end ends it.
+const NEAR: f64 = 0.3;
+/// What lies between bars is no narrower than so many bays: posts or goods narrow an empty one.
+const AS_WIDE: f64 = 0.95;
+/// From so many bays to so many is none that is empty, which posts or goods narrow by less, and pallets by more. What is so wide
+/// may be a way where so many others are too, but for so much, metres, and bars end so many times as many rows as they do not.
+const NARROW: [f64; 2] = [0.75, 0.88];
+const OTHERS: usize = 3;
+const ALIKE: f64 = 0.06;
+const ENDS: u32 = 8;
+/// What shares so much of a way's width is in line with it.
+const IN_LINE: f64 = 0.5;
+/// A way is told from an empty bay by its sides when these are so many times as likely those of the one as those of the other.
+const LIKELIER: f64 = 10.0;
+
+/// Which of some strips lie between bars, from one on; of all the places are known that they lead through.
+pub fn are_between(evidence: &Evidence, look: &Look, places: &[Place], strips: &[Strip], first: usize) -> Vec<bool> {
+    let bars: Vec<Bars> = places.iter().map(|place| Bars::new(evidence, look, place, strips)).collect();
+    (first..strips.len()).map(|n| bars.iter().any(|bars| bars.are_beside(n))).collect()
+}
+
+/// How often something is closed.
+#[derive(Clone, Copy, Default)]
+struct Often {
+    closed: u32,
+    open: u32,
+}
+
+impl Often {
+    fn of(sides: impl IntoIterator<Item = bool>) -> Self {
+        sides.into_iter().fold(Self::default(), Self::with)
+    }
+
+    fn with(self, is_closed: bool) -> Self {
+        Self { closed: self.closed + u32::from(is_closed), open: self.open + u32::from(!is_closed) }
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self { closed: self.closed + other.closed, open: self.open + other.open }
+    }
+
+    /// As if one more were closed and one were not.
+    fn share(self) -> f64 {
+        f64::from(self.closed + 1) / f64::from(self.closed + self.open + 2)
+    }
+
+    /// How likely just so many are closed where so large a share is, but for a factor.
+    fn likelihood(self, share: f64) -> f64 {
+        libm::pow(share, f64::from(self.closed)) * libm::pow(1.0 - share, f64::from(self.open))
+    }
+
+    /// True when it is clearly closed as often as the one, and not as the other.
+    fn is_as(self, one: Self, other: Self) -> bool {
+        self.likelihood(one.share()) > LIKELIER * self.likelihood(other.share())
+    }
+}
+
+impl Sum for Often {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), Self::and)
+    }
+}
+
+/// How often bars stand at the sides of something, at the rows' ends in its part of the place, and beside bays there.
+struct Told {
+    sides: Often,
+    ends: Often,
+    bays: Often,
+}
+
+impl Told {
+    /// They stand there as at rows' ends.
+    fn is_way(&self) -> bool {
+        self.sides.is_as(self.ends, self.bays)
+    }
+
+    /// None stands there, as beside bays.
+    fn is_bay(&self) -> bool {
+        self.sides.closed == 0 && self.sides.is_as(self.bays, self.ends)
+    }
+}
+
+/// What closes the rows of a place: each is looked at when it is first asked.
+pub struct Bars<'a> {
+    evidence: &'a Evidence<'a>,
+    look: &'a Look<'a>,
+    place: &'a Place<'a>,
+    strips: &'a [Strip],
+    rows: Vec<OnceCell<Closed<'a>>>,
+}
+
+/// A row, and how often it is closed at its ends, but for those at walls, and beside what is free of it and no way.
+struct Closed<'a> {
+    columns: Columns<'a>,
+    ends: Often,
+    bays: Often,
+}
+
+impl<'a> Bars<'a> {
+    pub fn new(evidence: &'a Evidence, look: &'a Look, place: &'a Place, strips: &'a [Strip]) -> Self {
+        Self { evidence, look, place, strips, rows: place.rows.iter().map(|_| OnceCell::new()).collect() }
+    }
+
+    /// True when what one of the strips passes through of the rows, between their ends, lies between bars: it is no narrower than a
+    /// bay, or several through other rows are as wide.
+    pub fn are_beside(&self, n: usize) -> bool {
+        let bay = self.place.pitch_of(&self.place.passing[n]);
+        let is_as_wide = |bay: f64| self.strips[n].width() >= AS_WIDE * bay;
+        if bay.is_none_or(is_as_wide) {
+            return self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_way());
+        }
+        bay.is_some_and(|bay| holds(NARROW.map(|part| part * bay), self.strips[n].width()))
+            && self.are_beside_several(n)
+    }
+
+    /// True when one of the strips lies between bars, and so do several as wide through other rows, where bars end nearly all
+    /// rows: all told they stand there as at rows' ends.
+    fn are_beside_several(&self, n: usize) -> bool {
+        let is_between = |n: usize| {
+            let told = self.told(n, &self.place.passing[n].rows)?;
+            (told.sides.open == 0 && told.ends.closed >= ENDS * told.ends.open).then_some(told)
+        };
+        let is_alike = |&m: &usize| {
+            let [own, other] = [n, m].map(|n| &self.place.passing[n].rows);
+            (self.strips[m].width() - self.strips[n].width()).abs() <= ALIKE
+                && !own.iter().any(|row| other.contains(row))
+        };
+        let Some(told) = is_between(n) else { return false };
+        let others = (0..self.strips.len()).filter(is_alike).filter_map(is_between);
+        let others: Vec<Often> = others.map(|told| told.sides).collect();
+        let are_several = others.len() >= OTHERS && (told.bays.open + told.bays.closed) as usize > others.len();
+        are_several && Told { sides: told.sides.and(others.into_iter().sum()), ..told }.is_way()
+    }
+
+    /// True when bars stand on both sides of one of the strips and end most rows, and beside no bay.
+    pub fn stand_beside_no_bays(&self, n: usize) -> bool {
+        self.told(n, &self.place.passing[n].rows)
+            .is_some_and(|Told { sides, ends, bays }| sides.open + bays.closed == 0 && ends.closed > ends.open)
+    }
+
+    /// True when each of the rows whose ends one of the strips leads past ends there at a bar, as most do in that part of the
+    /// place, and none stands beside a bay.
+    pub fn end_rows_before(&self, n: usize) -> bool {
+        let own = &self.place.passing[n];
+        let Some(first) = self.place.first_of(own).filter(|_| !own.is_within) else { return false };
+        let [ends, bays] = self.ends_and_bays(first);
+        let inner = |row: usize| self.place.rows[row].0.inner(self.sides(n, row));
+        let is_barred = |&row: &usize| self.row(row).columns.is_closed_at(inner(row));
+        bays.closed == 0 && ends.closed > ends.open && own.rows.iter().all(is_barred)
+    }
+
+    /// True when no bar stands at a side of what one of the strips passes through, though bars end the rows and do not stand
+    /// beside their bays, which are known.
+    pub fn are_missed(&self, n: usize) -> bool {
+        self.is_bay(n, &self.place.passing[n].rows)
+    }
+
+    /// True when something of the rows beside one of the strips stands where it would lead through them.
+    pub fn reach_into(&self, n: usize) -> bool {
+        !self.place.passing[n].next.iter().all(|&row| self.row(row).columns.is_bare(self.sides(n, row)))
+    }
+
+    /// True when posts that stand within what one of the strips passes through part it in each of the rows, between their ends:
+    /// it is an empty bay and a part of the next.
+    pub fn are_parted(&self, n: usize) -> bool {
+        let own = &self.place.passing[n];
+        own.is_within && own.rows.iter().all(|&row| self.is_parted_in(n, row))
+    }
+
+    /// True when posts part a strip in one row, were it so long, into pieces none of which is wider than a bay.
+    fn is_parted_in(&self, n: usize, row: usize) -> bool {
+        self.row(row).columns.is_parted(self.sides(n, row))
+    }
+
+    /// One of the strips without the rows in which posts stand between its sides and bars beside it are missed: it is in
+    /// pieces then, and where the next row is such a one it stops. Nothing where it stays as it is.
+    pub fn cut(&self, n: usize) -> Option<Vec<Strip>> {
+        let (own, strip) = (&self.place.passing[n], &self.strips[n]);
+        if !own.is_within || self.place.pitch_of(own).is_none() {
+            return None;
+        }
+        let mut ends = strip.stops;
+        for row in own.next.iter().copied().filter(|&row| !self.is_led_through(n, row) && self.has_bay(n, row)) {
+            ends[usize::from(self.along(n, row)[0] > strip.along[0])] = true;
+        }
+        let (bays, ways): (Vec<_>, Vec<_>) = own.rows.iter().copied().partition(|&row| self.has_bay(n, row));
+        if bays.is_empty() || ways.is_empty() {
+            return (ends != strip.stops).then(|| vec![Strip { stops: ends, ..strip.clone() }]);
+        }
+        let mut without: Vec<[f64; 2]> = bays.iter().map(|&row| self.along(n, row)).collect();
+        without.sort_by(|one, two| one[0].total_cmp(&two[0]));
+        let leads_through = |along| ways.iter().any(|&row| overlap(along, self.along(n, row)) > SHORTEST);
+        let [mut from, last] = strip.along;
+        let mut pieces = Vec::new();
+        for [to, next] in without.into_iter().chain(iter::once([last; 2])) {
+            if leads_through([from, to]) {
+                let stops = [ends[0] || from != strip.along[0], ends[1] || to != last];
+                pieces.push(Strip { along: [from, to], stops, ..strip.clone() });
+            }
+            from = from.max(next);
+        }
+        Some(pieces)
+    }
+
+    /// True when a strip leads over an empty bay of a row, by its posts, and where they do not part it by the bars. What costs
+    /// least is asked first.
+    fn has_bay(&self, n: usize, row: usize) -> bool {
+        // What would part one that leads through all rows of a place was left in it.
+        let is_parted = || !self.place.passing[n].is_whole() && self.is_parted_in(n, row);
+        let by_bars = || self.row(row).columns.posts_between(self.sides(n, row)) && self.is_bay(n, &[row]);
+        self.lead(n, row).is_within() && self.passes_by(n, row) && (is_parted() || by_bars())
+    }
+
+    /// True when bays are known, and what some rows have between the sides of a strip is one by the bars.
+    fn is_bay(&self, n: usize, rows: &[usize]) -> bool {
+        self.place.pitch_of(&self.place.passing[n]).is_some() && self.told(n, rows).is_some_and(|told| told.is_bay())
+    }
+
+    /// What bars tell of a strip in some rows, where it passes between rows' ends.
+    fn told(&self, n: usize, rows: &[usize]) -> Option<Told> {
+        let first = self.place.first_of(&self.place.passing[n]).filter(|_| self.place.passing[n].is_within)?;
+        let [ends, bays] = self.ends_and_bays(first);
+        let sides = |&row: &usize| {
+            Often::of(self.sides(n, row).into_iter().map(|side| self.row(row).columns.is_closed_at(side)))
+        };
+        Some(Told { sides: rows.iter().map(sides).sum(), ends, bays })
+    }
+
+    /// How often the rows are closed at their ends, and beside bays, in the part of the place that a row is of.
+    fn ends_and_bays(&self, row: usize) -> [Often; 2] {
+        let part: Vec<&Closed> = self.place.rows_with(row).into_iter().map(|row| self.row(row)).collect();
+        [part.iter().map(|row| row.ends).sum(), part.iter().map(|row| row.bays).sum()]
+    }
+
+    /// A strip across a row.
+    fn lead(&self, n: usize, row: usize) -> Lead<'a> {
+        Lead { views: self.place.views, row: &self.place.rows[row].0, strip: &self.strips[n] }
+    }
+
+    /// From the middle of the aisle on a row's one side to that on the other, along a strip.
+    fn along(&self, n: usize, row: usize) -> [f64; 2] {
+        let middle = |aisle: usize| self.strips[self.place.aisles[aisle]].middle();
+        self.lead(n, row).along(self.place.rows[row].1.map(middle))
+    }
+
+    /// From where to where along a row a strip lies.
+    fn sides(&self, n: usize, row: usize) -> [f64; 2] {
+        self.lead(n, row).sides()
+    }
+
+    /// True when another leads through a row in line with a strip.
+    fn is_led_through(&self, n: usize, row: usize) -> bool {
+        let own = &self.strips[n];
+        self.place.through[row]
+            .iter()
+            .any(|&m| m != n && overlap(self.strips[m].across, own.across) > IN_LINE * own.width())
+    }
+
+    /// True when something of a row stands in a strip, and one gets past it.
+    fn passes_by(&self, n: usize, row: usize) -> bool {
+        let (lead, other) = (self.lead(n, row), self.place.views[1]);
+        let ([low, high], along) = (wider(lead.strip.across, -SIDE), lead.along(lead.row.across));
+        let blocked = if low < high { other.some_blocked(other.columns(along), low, high) } else { Vec::new() };
+        blocked.iter().any(|share| *share > 0.0) && blocked.iter().all(|share| *share <= CLUTTER)
+    }
+
+    fn row(&self, n: usize) -> &Closed<'a> {
+        self.rows[n].get_or_init(|| self.look_at(n))
+    }
+
+    fn look_at(&self, n: usize) -> Closed<'a> {
+        let (place, strips) = (self.place, self.strips);
+        let ([view, other], (row, between), ways) = (place.views, &place.rows[n], &place.through[n]);
+        let columns = Columns::new(self.look, &self.evidence.grid.frame, [view, other], row, view.pitch_of(row));
+        let sides = |way: usize| self.sides(way, n);
+        let between = between.map(|aisle| place.aisles[aisle]);
+        let is_at_wall = |end: f64| walled::ends(view, strips, row, between, view.columns(wider([end; 2], NEAR))).any();
+        let is_of_way = |ends: [f64; 2]| ways.iter().any(|&way| overlap(wider(sides(way), NEAR), ends) >= 0.0);
+        // What leads past the row's end, or through all rows, is a way.
+        let centre = f64::midpoint(row.along[0], row.along[1]);
+        let known = ways.iter().flat_map(|&way| {
+            let ([low, high], passing) = (sides(way), &place.passing[way]);
+            match (passing.is_within, f64::midpoint(low, high) < centre) {
+                (true, _) if passing.is_whole() => vec![low, high],
+                (true, _) => Vec::new(),
+                (false, true) => vec![high],
+                (false, false) => vec![low],
+            }
+        });
+        let own = row.along.into_iter().filter(|&end| !is_of_way([end; 2])).chain(known);
+        let ends = Often::of(own.filter(|&end| !is_at_wall(end)).map(|end| columns.is_closed_at(end)));
+        let free = columns.free().into_iter().filter(|&(ends, _)| !is_of_way(ends));
+        // Between two bars a way may lie that is not known.
+        let closed = |sides: [bool; 2]| if sides == [true; 2] { Often::default() } else { Often::of(sides) };
+        let bays = free.map(|(_, sides)| closed(sides)).sum();
+        Closed { columns, ends, bays }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn often(closed: u32, open: u32) -> Often {
+        Often { closed, open }
+    }
+
+    #[test]
+    fn two_bars_tell_a_way_where_they_end_rows_and_do_not_stand_beside_bays() {
+        assert!(often(2, 0).is_as(often(8, 0), often(0, 8)));
+        assert!(!often(1, 1).is_as(often(8, 0), often(0, 8)));
+        // Frames that close their bays, rows that nothing ends, and too little that is known of either.
+        assert!(!often(2, 0).is_as(often(8, 0), often(4, 4)));
+        assert!(!often(2, 0).is_as(often(0, 8), often(0, 8)));
+        assert!(!often(2, 0).is_as(often(0, 0), often(0, 1)));
+    }
+}

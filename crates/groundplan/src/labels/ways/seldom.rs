@@ -1,0 +1,165 @@
+//! Whether rows of racks are open from aisle to aisle more often than chance makes: where the one of two racks back to back is
+//! empty the other seldom is as well, unless a way leads through both; and where hardly a shelf is empty no whole bay is.
+
+use crate::labels::rows::Row;
+use crate::labels::rows::shelves::{ENDS, Elsewhere, Shelves};
+use crate::labels::view::runs::Run;
+use crate::labels::view::turned::Turned;
+
+/// Two racks back to back are so deep, metres.
+const TWO: f64 = 1.5;
+/// What is open over so much of a width is as wide.
+pub const AS_WIDE: f64 = 0.85;
+/// Shorter ones, in widths, have no room for a way between racks.
+const LONG: f64 = 2.0;
+/// Fewer such rows tell nothing.
+const ROWS: usize = 2;
+/// It is not by chance that as many places are open when that is less likely than this.
+const UNLIKELY: f64 = 0.01;
+/// The same where each of the rows is open at as many, which chance seldom makes.
+const UNLIKELY_IN_FULL: f64 = 0.1;
+/// Where not each of the rows is open, chance makes fewer such places than this in all of them.
+const EXPECTED: f64 = 0.1;
+/// What is open of a half for less, metres, is between its goods.
+const SHELF: f64 = 0.5;
+/// Something stands along so much of the faces of solid rows, and no more than so much of their halves is open.
+const SOLID: (f64, f64) = (0.9, 0.01);
+/// One or two places at which they are open may be shelves that are empty.
+const SEVERAL: usize = 3;
+
+/// True when a row may be of two racks.
+pub fn is_double(row: &Row) -> bool {
+    row.depth() >= TWO
+}
+
+/// True when several of some rows side by side that are of two racks are open at places of a width, and all are at as many as
+/// they would hardly be by chance if each rack were empty where it is, whatever the other is: where one is open nowhere,
+/// hardly any such place is expected at all. Where no rack is empty alone both may be emptied together, bay by bay.
+pub fn are_open<'a>(
+    view: &Turned,
+    rows: impl Iterator<Item = &'a Shelves>,
+    width: f64,
+    may_be_bay: impl FnOnce() -> bool,
+) -> bool {
+    let (mut half_open, mut open, mut open_rows, mut places) = (0, 0, 0, 0.0);
+    let is_long = |shelves: &&Shelves| is_double(&shelves.row) && shelves.row.length() >= LONG * width;
+    let rows: Vec<&Shelves> = rows.filter(is_long).collect();
+    if rows.len() < ROWS {
+        return false;
+    }
+    let count = rows.len();
+    let least = (AS_WIDE * width / view.cell).ceil().max(1.0) as usize;
+    for shelves in rows {
+        let as_wide = |runs: &[Run]| {
+            let within = runs.iter().filter(|run| !shelves.is_end(**run));
+            within.map(|(from, to)| (to - from) / least).sum::<usize>()
+        };
+        let own = as_wide(&shelves.open());
+        open_rows += usize::from(own > 0);
+        open += own;
+        half_open += shelves.halves.iter().map(|half| as_wide(half).saturating_sub(own)).sum::<usize>();
+        places += shelves.row.length() / width;
+    }
+    let expected = by_chance(open, half_open as f64, places);
+    open_rows >= ROWS
+        && likely(open, expected) < UNLIKELY
+        && (open_rows == count || open >= SEVERAL && expected < EXPECTED && (half_open > 0 || !may_be_bay()))
+}
+
+/// Rows side by side but for some places at which they are open.
+pub struct Rest<'a> {
+    view: &'a Turned,
+    rows: Vec<Elsewhere<'a>>,
+    /// Columns of a width, of both the rows' halves and of those at which a half is open.
+    width: f64,
+    halves: f64,
+    free: f64,
+}
+
+impl<'a> Rest<'a> {
+    /// But for where they are open at a width.
+    pub fn new(view: &'a Turned, rows: impl Iterator<Item = &'a Shelves>, width: f64) -> Self {
+        Self::but_for(view, rows, width, width / AS_WIDE)
+    }
+
+    /// But for where they are open at a width and at wider ones.
+    pub fn but_for_wider(view: &'a Turned, rows: impl Iterator<Item = &'a Shelves>, width: f64) -> Self {
+        Self::but_for(view, rows, width, f64::INFINITY)
+    }
+
+    fn but_for(view: &'a Turned, rows: impl Iterator<Item = &'a Shelves>, width: f64, widest: f64) -> Self {
+        let [least, most] = [AS_WIDE * width / view.cell, widest / view.cell + ENDS as f64];
+        let as_wide = |length: usize| (least..=most).contains(&(length as f64));
+        let rows: Vec<Elsewhere> = rows.map(|shelves| shelves.elsewhere(view, as_wide)).collect();
+        let free = rows.iter().map(|row| row.free(SHELF / view.cell)).sum::<usize>() as f64;
+        let halves = 2.0 * rows.iter().map(Elsewhere::columns).sum::<usize>() as f64;
+        Self { view, rows, width: width / view.cell, halves, free }
+    }
+
+    /// At how many places, but for those past their ends, the rows are open that were left out.
+    pub fn open(&self) -> usize {
+        self.rows.iter().map(|row| row.open).sum()
+    }
+
+    /// True when the rows are of two racks and stand solid but for several places, however many each has.
+    pub fn is_solid(&self) -> bool {
+        self.open() >= SEVERAL && self.rows.iter().all(|row| is_double(&row.shelves.row)) && self.is_closed()
+    }
+
+    /// True when next to nothing of the rows is open but for those places, and something stands all along their faces.
+    pub fn is_closed(&self) -> bool {
+        let stands = || self.rows.iter().map(|row| row.stands(self.view)).sum::<usize>() as f64;
+        self.halves > 0.0 && self.free <= SOLID.1 * self.halves && stands() >= SOLID.0 * self.halves
+    }
+
+    /// True when each row has as many places, as where a way leads through each, and so little else of their halves is open
+    /// that as many would hardly be by chance: no shelves are empty there.
+    pub fn is_full(&self) -> bool {
+        // Half a place more is open and one more is there, as so few tell little.
+        let share = (self.free + 0.5 * self.width) / (self.halves + self.width);
+        let by_chance = self.halves / 2.0 / self.width * share * share;
+        self.rows.iter().all(|row| row.open == self.rows[0].open) && likely(self.open(), by_chance) < UNLIKELY_IN_FULL
+    }
+}
+
+/// At how many of all places both racks are expected to be empty by chance, where both are at so many and one of them is at so
+/// many more.
+fn by_chance(open: usize, half_open: f64, places: f64) -> f64 {
+    // How often the one is empty where the other is not.
+    let shut = (places - open as f64 - half_open).max(0.0);
+    let share = (half_open + 0.5) / (half_open + 2.0 * shut + 1.0);
+    places * share * share
+}
+
+/// How likely so many or more are where so many are expected (Poisson's distribution).
+fn likely(count: usize, expected: f64) -> f64 {
+    let mut term = libm::exp(-expected);
+    let mut fewer = 0.0;
+    for n in 0..count {
+        fewer += term;
+        term *= expected / (n + 1) as f64;
+    }
+    1.0 - fewer
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_as_likely_as_the_distribution_says() {
+        for (count, expected, said) in
+            [(0, 0.1, 1.0), (1, 0.1, 0.0952), (2, 0.1, 0.0047), (4, 1.0, 0.0190), (5, 1.0, 0.0037)]
+        {
+            assert!((likely(count, expected) - said).abs() < 1e-4, "{count} of {expected}");
+        }
+    }
+
+    #[test]
+    fn where_one_of_two_racks_is_seldom_empty_both_are_not_by_chance() {
+        let is_more_than_chance = |open, half_open| likely(open, by_chance(open, half_open, 40.0)) < UNLIKELY;
+        assert!(is_more_than_chance(2, 2.0));
+        assert!(!is_more_than_chance(2, 30.0));
+        assert!(!is_more_than_chance(0, 2.0));
+    }
+}
