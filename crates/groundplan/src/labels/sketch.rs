@@ -2,6 +2,7 @@
 //! that may be a door.
 
 use super::beside::placed;
+use super::corridors::askew;
 use super::corridors::bends;
 use super::corridors::connected;
 use super::corridors::cornered;
@@ -227,6 +228,7 @@ impl Plan {
         let found = rows::without_lanes(views, crossed::without_bays(evidence, look, views, found));
         let found = pillared::widened(views, &slots::without(views, found), evidence.parameters);
         let found = corridors::without_bent(views, past_goods::led_on(views, found, least));
+        let found = askew::cut(views, found);
         let threads = evidence.threads;
         let standing = Standing::new(views, evidence.recall, threads);
         // What was too short to stay bars no way whose sides are no lines, but tells how wide that is.
