@@ -369,8 +369,10 @@ pub fn without_lanes(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
     let is_lane = |own: &&Strip| {
         let near = placed[own.direction].touching(own.along, wider(own.across, DEPTH.1));
+        // Past the ends of a rack both it and the ways beside it go on as one floor.
+        let [from, to] = shared(own.along, own.held);
         let is_way = |other: &&Strip| {
-            overlap(other.along, own.along) >= ALONG * own.length() && other.width() >= WIDER * own.width()
+            overlap(other.along, [from, to]) >= ALONG * (to - from) && other.width() >= WIDER * own.width()
         };
         let [below, above] = facing(own, near.iter().map(|&n| &strips[n]).filter(is_way));
         above - below <= DEPTH.1 && (own.across[0] - below).min(above - own.across[1]) <= BEAM
