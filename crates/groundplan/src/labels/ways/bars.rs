@@ -3,6 +3,7 @@
 
 use super::lead::Lead;
 use super::passing::Place;
+use super::seldom;
 use super::walled;
 use crate::ends::{holds, overlap, wider};
 use crate::labels::Evidence;
@@ -22,6 +23,8 @@ const AS_WIDE: f64 = 0.95;
 /// may be a way where so many others are too, but for so much, metres, and bars end so many times as many rows as they do not.
 const NARROW: [f64; 2] = [0.75, 0.88];
 const OTHERS: usize = 3;
+const POOLED: f64 = 0.16;
+const DOUBLE: usize = 3;
 const ALIKE: f64 = 0.06;
 const ENDS: u32 = 8;
 /// What shares so much of a way's width is in line with it.
@@ -146,6 +149,29 @@ impl<'a> Bars<'a> {
         let others: Vec<Often> = others.map(|told| told.sides).collect();
         let are_several = others.len() >= OTHERS && (told.bays.open + told.bays.closed) as usize > others.len();
         are_several && Told { sides: told.sides.and(others.into_iter().sum()), ..told }.is_way()
+    }
+
+    /// True when one of the strips lies between bars, and what leads through other rows of its part of the place and is as wide
+    /// does as a rule, as often as rows end at bars.
+    pub fn are_beside_all(&self, n: usize) -> bool {
+        let own = &self.place.passing[n];
+        let Some(told) = self.told(n, &own.rows).filter(|told| told.sides.open == 0) else { return false };
+        let Some(part) = self.place.first_of(own).map(|row| self.place.rows_with(row)) else { return false };
+        let is_alike = |&m: &usize| {
+            let other = &self.place.passing[m];
+            let is_near = (self.strips[m].width() - self.strips[n].width()).abs() <= POOLED;
+            is_near
+                && other.is_within
+                && !other.rows.is_empty()
+                && other.rows.iter().all(|row| part.contains(row) && !own.rows.contains(row))
+        };
+        let others: Vec<usize> = (0..self.strips.len()).filter(is_alike).collect();
+        let sides = others.iter().filter_map(|&m| self.told(m, &self.place.passing[m].rows)).map(|told| told.sides);
+        let sides = told.sides.and(sides.sum());
+        let is_double = |&row: &usize| seldom::is_double(&self.place.rows[row].0);
+        let is_of_two_racks = |m: &&usize| self.place.passing[**m].rows.iter().all(is_double);
+        let double = iter::once(&n).chain(&others).filter(is_of_two_racks).count();
+        others.len() >= OTHERS && DOUBLE * double > others.len() && Told { sides, ..told }.is_way()
     }
 
     /// True when bars stand on both sides of one of the strips and end most rows, and beside no bay.

@@ -195,7 +195,9 @@ impl<'a> Asked<'a> {
             (true, false) => !bars.are_missed(self.n),
             (false, true) => false,
             (true, true) => bars.are_beside(self.n),
-            (false, false) => self.is_between_bars_of_two_racks(),
+            (false, false) => {
+                self.is_between_bars_of_two_racks() || !self.is_told_within() && bars.are_beside_all(self.n)
+            }
         }
     }
 
