@@ -35,7 +35,7 @@ const LIKELIER: f64 = 10.0;
 /// Which of some strips lie between bars, from one on; of all the places are known that they lead through.
 pub fn are_between(evidence: &Evidence, look: &Look, places: &[Place], strips: &[Strip], first: usize) -> Vec<bool> {
     let bars: Vec<Bars> = places.iter().map(|place| Bars::new(evidence, look, place, strips)).collect();
-    (first..strips.len()).map(|n| bars.iter().any(|bars| bars.are_beside(n))).collect()
+    (first..strips.len()).map(|n| bars.iter().any(|bars| bars.are_beside(n) || bars.are_beside_all(n))).collect()
 }
 
 /// How often something is closed.
