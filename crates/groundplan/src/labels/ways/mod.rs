@@ -217,8 +217,11 @@ impl<'a> Asked<'a> {
 
     /// True when it lies where an empty bay would: before a wall to which the rows beside it go on, or as bays of single rows lie.
     fn lies_as_bays(&self) -> bool {
-        let is_before_wall =
-            || self.own.rows.len() == 1 && !self.own.is_led_on && is_at_wall(self.context.place.views[1], self.strip);
+        let is_before_wall = || {
+            self.own.rows.len() == 1
+                && !self.own.is_led_on
+                && walls(self.context.place.views[1], self.strip).contains(&true)
+        };
         let may_lie = || self.pitch().is_none() || self.may_be_bay();
         let is_as_bays_lie = || {
             may_lie()
@@ -274,12 +277,19 @@ impl<'a> Asked<'a> {
         is_known && !self.is_anywhere()
     }
 
-    /// True when it leads past the ends of several rows, up to one that goes on farther beside them: it is as wide as the hall
-    /// leaves there. Between two that go on it would as well be empty bays of the rows between these.
+    /// True when it leads past the ends of several rows, up to one that goes on farther beside them, or up to the wall along it: it
+    /// is as wide as the hall leaves there. Between two that go on it would as well be empty bays of the rows between these.
     fn is_as_the_hall_leaves(&self) -> bool {
         let &[next] = &self.own.next[..] else { return false };
-        let leads_past_ends =
-            self.own.rows.len() > 1 && !self.own.is_within && self.context.place.goes_past(next, self.strip, FARTHER);
+        let place = self.context.place;
+        let is_at_wall = || {
+            let goes_past = place.sides_passed(next, self.strip, FARTHER);
+            let walls = walls(place.views[1], self.strip);
+            (0..2).any(|side| walls[side] && goes_past[1 - side])
+        };
+        let leads_past_ends = self.own.rows.len() > 1
+            && !self.own.is_within
+            && (place.goes_past(next, self.strip, FARTHER) || is_at_wall());
         leads_past_ends && !(self.is_told_within() && self.may_be_bay())
     }
 
@@ -334,11 +344,12 @@ impl<'a> Asked<'a> {
     }
 }
 
-/// True when a wall runs all along one side of a strip.
-fn is_at_wall(view: &Turned, strip: &Strip) -> bool {
+/// Along which of a strip's sides a wall runs all along.
+fn walls(view: &Turned, strip: &Strip) -> [bool; 2] {
     let columns = view.columns(strip.along);
-    strip.across.into_iter().zip([-BEYOND, BEYOND]).any(|(side, beyond)| {
-        let ends = sorted([side, side + beyond]);
+    [0, 1].map(|n| {
+        let side = strip.across[n];
+        let ends = sorted([side, side + [-BEYOND, BEYOND][n]]);
         let taken = view.some_blocked(columns.clone(), ends[0], ends[1]);
         taken.iter().filter(|share| **share >= TAKEN).count() as f64 >= WALL * taken.len() as f64
     })

@@ -108,9 +108,14 @@ impl Place<'_> {
 
     /// True when a row goes on past both sides of a strip that would cross it, by so much, metres.
     pub fn goes_past(&self, row: usize, strip: &Strip, by: f64) -> bool {
+        self.sides_passed(row, strip, by) == [true; 2]
+    }
+
+    /// Past which of the two sides it does.
+    pub fn sides_passed(&self, row: usize, strip: &Strip, by: f64) -> [bool; 2] {
         let ([view, other], (row, _)) = (self.views, &self.rows[row]);
         let middle = f64::midpoint(row.across[0], row.across[1]);
-        strip.across.iter().all(|&side| holds(wider(row.along, -by), view.crossing(other, middle, side)[1]))
+        strip.across.map(|side| holds(wider(row.along, -by), view.crossing(other, middle, side)[1]))
     }
 
     /// The first row that something passes through, but for walls between halls.
