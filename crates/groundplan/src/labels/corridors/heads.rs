@@ -141,7 +141,8 @@ impl Heads<'_> {
                 if !are_bays && (empty - width >= APART || is_short()) {
                     found.extend(self.way(&chain[from..to], wall, width).map(|led| Head { led, free }));
                 }
-            } else if let Some([wall, width, _]) = ends[from].filter(|&[wall, ..]| self.leads_past(&chain[from], wall))
+            } else if let Some([wall, width, _]) = ends[from]
+                .filter(|&[wall, ..]| self.leads_past(&chain[from], wall) || self.steps_out(chain, &ends, from))
             {
                 found.extend(self.way(&chain[from..=from], wall, width).map(|led| Head { led, free: vec![width] }));
             }
@@ -173,6 +174,15 @@ impl Heads<'_> {
         let taken = self.view.some_blocked(columns, row.faces[0], row.faces[1]);
         taken.iter().any(|share| *share >= CLOSED)
             && row.aisles.into_iter().any(|n| self.is_past(n, self.strips[n].along[self.side], wall))
+    }
+
+    /// True when the wall before a row lies farther out than that before a row beside it: there the hall has a corner, and the row's
+    /// two aisles meet before it.
+    fn steps_out(&self, chain: &[Between], ends: &[Option<[f64; 3]>], n: usize) -> bool {
+        let wall = |n: usize| ends.get(n).copied().flatten().map(|[wall, ..]| wall);
+        let beside = [n.checked_sub(1), Some(n + 1)].into_iter().flatten().filter_map(wall);
+        let is_past = |own: f64, other: f64| chain[n].aisles.iter().all(|&aisle| self.is_past(aisle, own, other));
+        wall(n).is_some_and(|own| beside.into_iter().any(|other| is_past(own, other)))
     }
 
     /// True when a place along an aisle is farther outwards than a wall by as much as the aisle is wide.
