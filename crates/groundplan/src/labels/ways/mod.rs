@@ -285,7 +285,7 @@ impl<'a> Asked<'a> {
         let is_at_wall = || {
             let goes_past = place.sides_passed(next, self.strip, FARTHER);
             let walls = walls(place.views[1], self.strip);
-            (0..2).any(|side| walls[side] && goes_past[1 - side])
+            (0..2).any(|side| walls[side] && goes_past[1 - side]) && !self.may_be_bay()
         };
         let leads_past_ends = self.own.rows.len() > 1
             && !self.own.is_within
