@@ -10,7 +10,7 @@ use crate::labels::view::turned::Turned;
 /// Aisles that a way crosses at an angle of such a sine run neither along it nor square to it.
 const ASKEW: [f64; 2] = [0.2, 0.97];
 /// Somewhere between two of them so much of its width is taken.
-const TAKEN: f64 = 0.3;
+const TAKEN: f64 = 0.02;
 /// Along no more than this share of it the ground ends at either of its sides.
 const EDGED: f64 = 0.25;
 /// Ground that ends does so for this share of what lies on the side.
