@@ -121,3 +121,31 @@ def test_ways_narrower_than_bays_through_one_row_each_are_ways_where_as_wide_one
     survey = groundplan.survey(drawn(52.5, 16.0 + 4 * depth, boxes), resolution=0.05)
     across = sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C"))
     assert across == pytest.approx([2.3] * 4 + [4.0] * 2, abs=0.2)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_ways_through_one_row_each_are_ways_where_most_lie_between_bars_of_two_racks(seed: int) -> None:
+    """Six rows of 15 bays, of two racks and of one by turns, each parted by a way; a fifth of the goods is gone."""
+    draws = np.random.default_rng(seed)
+
+    def row(y: float, racks: int, parted: int) -> Iterator[Box]:
+        x, depth = 4.0, 1.1 * racks
+        for n in range(15):
+            if n in (0, parted):
+                yield x, y, x + 0.1, y + depth
+            for low in (y, y + depth - 0.1):
+                yield x, low, x + 0.1, low + 0.1
+                yield x + 2.8, low, x + 2.9, low + 0.1
+            for rack in range(racks):
+                goods = [x + 0.15 + 0.9 * m for m in range(3) if draws.random() > 0.2]
+                yield from ((left, y + 1.1 * rack, left + 0.84, y + 1.1 * rack + 1.0) for left in goods)
+            x += 2.8
+            if n in (parted - 1, 14):
+                yield x, y, x + 0.1, y + depth
+                x += 2.4
+
+    places = [(3.2, 2, 4), (8.6, 1, 10), (12.9, 2, 6), (18.3, 1, 12), (22.6, 2, 5), (28.0, 1, 9)]
+    boxes = (box for place in places for box in row(*place))
+    survey = groundplan.survey(drawn(52.5, 32.3, boxes), resolution=0.05)
+    across = sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C"))
+    assert across == pytest.approx([2.3] * 6 + [4.1] * 2, abs=0.2)

@@ -319,3 +319,20 @@ def test_aisles_lead_past_goods_to_the_way_before_them_though_those_of_another_z
 
     survey = groundplan.survey(drawn(28.0, 33.6, boxes()), resolution=0.05)
     assert len(survey.of_kind("junction")) == 19
+
+
+@pytest.mark.parametrize(("to_wall", "ends"), [({0}, 1), ({3}, 1), ({2, 3}, 2)], ids=str)
+def test_a_way_leads_along_a_wall_up_to_the_row_that_goes_on_to_it(to_wall: set[int], ends: int) -> None:
+    # Four rows 5.5 m before the west wall and 3.5 m before the east wall, but for those.
+    rows = ((5.5, 3 + 5 * n, 40 if n in to_wall else 36.5, 5 + 5 * n) for n in range(4))
+    survey = groundplan.survey(drawn(40, 23, rows), resolution=0.05)
+    kinds = sorted(label["type"] for label in survey.of_kind("junction"))
+    assert kinds == ["L"] * 4 + ["T"] * (6 - ends) + ["end"] * ends
+
+
+@pytest.mark.parametrize("free", [3, 4, 5])
+def test_the_two_aisles_of_a_row_meet_before_a_corner_of_the_hall(free: int) -> None:
+    # Beside it two rows end before a wall that stands 6 m farther in.
+    boxes: list[Box] = [(4, 3, 40 - free, 5), (4, 8, 31, 10), (4, 13, 31, 15), (34, 8, 40, 18)]
+    survey = groundplan.survey(drawn(40, 18, iter(boxes)), resolution=0.05)
+    assert sorted(label["type"] for label in survey.of_kind("junction")) == ["L"] * 5 + ["T"] * 4

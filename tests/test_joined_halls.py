@@ -193,3 +193,39 @@ def test_a_passage_between_two_halls_opens_into_that_one_from_which_it_was_seen(
     picture[212:256, 420 : 420 + round(hidden / RESOLUTION)] = 205
     junctions, _ = found(np.ascontiguousarray(np.rot90(picture, turns)))
     assert junctions == ["L"] * 8 + ["T"] * (5 if hidden else 6)
+
+
+@pytest.mark.parametrize(
+    ("turn", "first", "depth", "gaps"),
+    [(42.8, 4.6, 1.3, (3.2, 7.4, 11)), (28.5, 5.4, 1.5, (1.2, 4.1, 7.3)), (38.7, 4.8, 1.9, (2.5, 7.3, 11))],
+)
+def test_an_aisle_leads_into_a_wing_up_to_its_first_aisle_and_not_on_through_its_cross_aisle(
+    turn: float, first: float, depth: float, gaps: tuple[float, float, float]
+) -> None:
+    # The racks of the wing are parted where a passage of 3 m, in line with an aisle of the hall, would lead on.
+    canvas = Canvas(1500, 1500)
+
+    def box(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
+        canvas.box(20 * (x + 4), 20 * (y + 30), 20 * (right + 4), 20 * (top + 30), value)
+
+    def wing(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
+        cos, sin = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+        u, v = x, (y + top) / 2
+        start = (20 * (33 + cos * u + sin * v), 20 * (41.5 + cos * v - sin * u))
+        canvas.bar(start, -turn, 20 * (right - x), 20 * (top - y), value)
+
+    box(-0.15, -0.15, 26.15, 19.15)
+    box(25.7, 9.85, 32, 13.15)
+    wing(-0.15, -14.15, 24.15, 20.15)
+    box(0, 0, 26, 19, FREE)
+    wing(0, -14, 24, 20, FREE)
+    box(25.7, 10, 31, 13, FREE)
+    for n in range(3):
+        box(4, 3 + 5 * n, 22, 5 + 5 * n)
+    for n, gap in enumerate(gaps):
+        for low, top in ((-10, gap), (gap + 3.4, 16)):
+            wing(first + n * (depth + 3.2), low, first + n * (depth + 3.2) + depth, top)
+    survey = groundplan.survey(canvas.picture, resolution=RESOLUTION)
+    along = [way["axis"] for way in survey.of_kind("corridor") if abs(np.subtract(*way["axis"])[1]) < 1]
+    assert len(along) == 4
+    assert max(end[0] for axis in along for end in axis) < 46

@@ -47,6 +47,19 @@ def test_what_is_free_between_the_beams_of_a_rack_is_no_way(aisle: float) -> Non
     assert sorted(label["type"] for label in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 4
 
 
+@pytest.mark.parametrize("short", [3, 4])
+def test_what_is_free_between_two_beams_is_no_way_where_the_next_row_ends_before_them(short: int) -> None:
+    # By turns two beams 1.3 m apart and a block 2.6 m deep that is shorter, 4 m before the walls.
+    def boxes() -> Iterator[Box]:
+        for y in (4.0, 16.0):
+            yield 4, y, 18, y + 0.1
+            yield 4, y + 1.3, 18, y + 1.4
+            yield 4, y + 5.4, 18 - short, y + 8.0
+
+    survey = groundplan.survey(drawn(22, 28, boxes()), resolution=0.05)
+    assert min(way["width"] for way in survey.of_kind("corridor")) > 3
+
+
 def test_a_passage_between_two_wider_corridors_is_no_inside_of_a_rack() -> None:
     picture = hall(24.0, 7.6)
     for wall in (3.0, 4.5):

@@ -91,7 +91,7 @@ const CLUTTER: f64 = 0.1;
 const EMPTY: f64 = 0.1;
 /// A way beside a rack is so many times as wide as what of its inside is free, and lies beside so much of that.
 const WIDER: f64 = 1.7;
-const ALONG: f64 = 0.8;
+const ALONG: f64 = 0.7;
 /// A beam is no deeper, metres; and in racks there are so many such lanes at least.
 const BEAM: f64 = 0.24;
 const LANES: usize = 2;
@@ -369,10 +369,8 @@ pub fn without_lanes(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
     let is_lane = |own: &&Strip| {
         let near = placed[own.direction].touching(own.along, wider(own.across, DEPTH.1));
-        // Past the ends of a rack both it and the ways beside it go on as one floor.
-        let [from, to] = shared(own.along, own.held);
         let is_way = |other: &&Strip| {
-            overlap(other.along, [from, to]) >= ALONG * (to - from) && other.width() >= WIDER * own.width()
+            overlap(other.along, own.along) >= ALONG * own.length() && other.width() >= WIDER * own.width()
         };
         let [below, above] = facing(own, near.iter().map(|&n| &strips[n]).filter(is_way));
         above - below <= DEPTH.1 && (own.across[0] - below).min(above - own.across[1]) <= BEAM
