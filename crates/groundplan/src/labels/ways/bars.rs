@@ -160,10 +160,11 @@ impl<'a> Bars<'a> {
         let is_alike = |&m: &usize| {
             let other = &self.place.passing[m];
             let is_near = (self.strips[m].width() - self.strips[n].width()).abs() <= POOLED;
-            is_near
+            m != n
+                && is_near
                 && other.is_within
                 && !other.rows.is_empty()
-                && other.rows.iter().all(|row| part.contains(row) && !own.rows.contains(row))
+                && other.rows.iter().all(|row| part.contains(row))
         };
         let others: Vec<usize> = (0..self.strips.len()).filter(is_alike).collect();
         let sides = others.iter().filter_map(|&m| self.told(m, &self.place.passing[m].rows)).map(|told| told.sides);

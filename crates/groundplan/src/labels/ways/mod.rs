@@ -45,6 +45,8 @@ const FARTHER: f64 = 1.0;
 const IN_LINE: usize = 3;
 /// What leads through several rows is a way where fewer such places would be expected by chance.
 const SELDOM: f64 = 0.06;
+/// The same along a wall, where rows end and others go on to it.
+const AT_WALL: f64 = 0.001;
 /// What is as wide as a bay is an empty one where more would be.
 const ANYWHERE: f64 = 0.4;
 /// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
@@ -285,7 +287,8 @@ impl<'a> Asked<'a> {
         let is_at_wall = || {
             let goes_past = place.sides_passed(next, self.strip, FARTHER);
             let walls = walls(place.views[1], self.strip);
-            (0..2).any(|side| walls[side] && goes_past[1 - side]) && !self.may_be_bay()
+            (0..2).any(|side| walls[side] && goes_past[1 - side])
+                && (!self.may_be_bay() || self.expected().is_some_and(|expected| expected < AT_WALL))
         };
         let leads_past_ends = self.own.rows.len() > 1
             && !self.own.is_within
