@@ -290,10 +290,10 @@ impl<'a> Asked<'a> {
             (0..2).any(|side| walls[side] && goes_past[1 - side])
                 && (!self.may_be_bay() || self.expected().is_some_and(|expected| expected < AT_WALL))
         };
-        let leads_past_ends = self.own.rows.len() > 1
+        let is_of_bays = || self.is_told_within() && self.may_be_bay();
+        self.own.rows.len() > 1
             && !self.own.is_within
-            && (place.goes_past(next, self.strip, FARTHER) || is_at_wall());
-        leads_past_ends && !(self.is_told_within() && self.may_be_bay())
+            && (is_at_wall() || place.goes_past(next, self.strip, FARTHER) && !is_of_bays())
     }
 
     /// True when it leads past the ends of several rows, and nothing of those beside reaches into it, or those before it end at
