@@ -3,7 +3,6 @@
 
 use super::lead::Lead;
 use super::passing::Place;
-use super::seldom;
 use super::walled;
 use crate::ends::{holds, overlap, wider};
 use crate::labels::Evidence;
@@ -23,7 +22,11 @@ const AS_WIDE: f64 = 0.95;
 /// may be a way where so many others are too, but for so much, metres, and bars end so many times as many rows as they do not.
 const NARROW: [f64; 2] = [0.75, 0.88];
 const OTHERS: usize = 3;
-const POOLED: f64 = 0.16;
+/// Posts and goods narrow no empty bay by so much, metres; half of one, with what goods leave beside it, is no wider than this share.
+const NARROWER: f64 = 0.4;
+const MORE_THAN_HALF: f64 = 0.62;
+/// Of all that are as wide but for so much, metres, as where posts and goods narrow them, one in so many leads through two racks.
+const ALL_ALIKE: f64 = 0.16;
 const DOUBLE: usize = 3;
 const ALIKE: f64 = 0.06;
 const ENDS: u32 = 8;
@@ -151,26 +154,29 @@ impl<'a> Bars<'a> {
         are_several && Told { sides: told.sides.and(others.into_iter().sum()), ..told }.is_way()
     }
 
-    /// True when one of the strips lies between bars, and what leads through other rows of its part of the place and is as wide
-    /// does as a rule, as often as rows end at bars.
+    /// True when one of the strips lies between bars and is too narrow for a bay, and what is as wide in its part of the place lies
+    /// between bars as often as rows end at them: many do, and enough of them through two racks back to back, whose goods seldom
+    /// line up as a bar does.
     pub fn are_beside_all(&self, n: usize) -> bool {
-        let own = &self.place.passing[n];
-        let Some(told) = self.told(n, &own.rows).filter(|told| told.sides.open == 0) else { return false };
+        let (own, width) = (&self.place.passing[n], self.strips[n].width());
+        let is_no_bay = |bay: f64| width <= bay - NARROWER && width >= MORE_THAN_HALF * bay;
+        let may_be = self.place.pitch_of(own).is_some_and(is_no_bay);
+        let Some(told) = self.told(n, &own.rows).filter(|told| may_be && told.sides.open == 0) else {
+            return false;
+        };
         let Some(part) = self.place.first_of(own).map(|row| self.place.rows_with(row)) else { return false };
         let is_alike = |&m: &usize| {
             let other = &self.place.passing[m];
-            let is_near = (self.strips[m].width() - self.strips[n].width()).abs() <= POOLED;
             m != n
-                && is_near
                 && other.is_within
+                && (self.strips[m].width() - width).abs() <= ALL_ALIKE
                 && !other.rows.is_empty()
                 && other.rows.iter().all(|row| part.contains(row))
         };
         let others: Vec<usize> = (0..self.strips.len()).filter(is_alike).collect();
         let sides = others.iter().filter_map(|&m| self.told(m, &self.place.passing[m].rows)).map(|told| told.sides);
         let sides = told.sides.and(sides.sum());
-        let is_double = |&row: &usize| seldom::is_double(&self.place.rows[row].0);
-        let is_of_two_racks = |m: &&usize| self.place.passing[**m].rows.iter().all(is_double);
+        let is_of_two_racks = |m: &&usize| self.place.are_double(&self.place.passing[**m]);
         let double = iter::once(&n).chain(&others).filter(is_of_two_racks).count();
         others.len() >= OTHERS && DOUBLE * double > others.len() && Told { sides, ..told }.is_way()
     }

@@ -236,9 +236,8 @@ impl<'a> Asked<'a> {
     /// back to back goods seldom line up so.
     fn is_between_bars_of_two_racks(&self) -> bool {
         let place = self.context.place;
-        let is_double = |&row: &usize| seldom::is_double(&place.rows[row].0);
         place.views[0].pitch.is_some()
-            && self.own.rows.iter().all(is_double)
+            && place.are_double(self.own)
             && (self.own.racks > 1 || !self.is_told_within())
             && self.context.bars.are_beside(self.n)
     }

@@ -61,7 +61,6 @@ impl Place<'_> {
     /// True when the rows that something passes through are with those side by side with them open more often than by chance:
     /// of two racks each, or hardly open elsewhere, or solid where it is as wide as no bay and nothing leads through them all.
     pub fn is_open_through(&self, strips: &[Strip], own: &Passing, width: f64) -> bool {
-        let is_double = |&row: &usize| seldom::is_double(&self.rows[row].0);
         let Some(first) = self.first_of(own) else { return false };
         let part = self.rows_with(first);
         let rows = || part.iter().map(|&row| self.shelves(row));
@@ -72,9 +71,14 @@ impl Place<'_> {
             rest.is_full() || rest.is_solid() && !may_be_bay()
         };
         own.is_within && is_full()
-            || own.rows.iter().all(is_double)
+            || self.are_double(own)
                 && self.is_as_aisles(strips, own, width)
                 && seldom::are_open(self.views[0], rows(), width, is_as_bays)
+    }
+
+    /// True when all rows that something passes through may be of two racks.
+    pub fn are_double(&self, own: &Passing) -> bool {
+        own.rows.iter().all(|&row| seldom::is_double(&self.rows[row].0))
     }
 
     /// True when a width is not much less than that of the aisles beside the rows that something passes through.
