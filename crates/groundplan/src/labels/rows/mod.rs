@@ -363,7 +363,7 @@ pub fn facing<'a>(own: &Strip, strips: impl Iterator<Item = &'a Strip> + Clone) 
     [below.fold(f64::NEG_INFINITY, f64::max), above.fold(f64::INFINITY, f64::min)]
 }
 
-/// The strips without those inside racks: all along between two wider ways that are no further apart than the faces of racks,
+/// The strips without those inside racks: along most of them between two wider ways that are no further apart than the faces of racks,
 /// with no more than a beam to one of them, as others as wide do.
 pub fn without_lanes(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));

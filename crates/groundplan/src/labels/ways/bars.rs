@@ -209,6 +209,11 @@ impl<'a> Bars<'a> {
         !self.place.passing[n].next.iter().all(|&row| self.row(row).columns.is_bare(self.sides(n, row)))
     }
 
+    /// True when nothing of the rows that one of the strips passes through stands in it.
+    pub fn are_bare(&self, n: usize) -> bool {
+        self.place.passing[n].rows.iter().all(|&row| self.row(row).columns.is_bare(self.sides(n, row)))
+    }
+
     /// True when posts that stand within what one of the strips passes through part it in each of the rows, between their ends:
     /// it is an empty bay and a part of the next.
     pub fn are_parted(&self, n: usize) -> bool {

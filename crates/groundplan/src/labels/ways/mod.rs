@@ -222,7 +222,7 @@ impl<'a> Asked<'a> {
         let is_before_wall = || {
             self.own.rows.len() == 1
                 && !self.own.is_led_on
-                && walls(self.context.place.views[1], self.strip).contains(&true)
+                && walled_sides(self.context.place.views[1], self.strip).contains(&true)
         };
         let may_lie = || self.pitch().is_none() || self.may_be_bay();
         let is_as_bays_lie = || {
@@ -285,9 +285,10 @@ impl<'a> Asked<'a> {
         let place = self.context.place;
         let is_at_wall = || {
             let goes_past = place.sides_passed(next, self.strip, FARTHER);
-            let walls = walls(place.views[1], self.strip);
-            (0..2).any(|side| walls[side] && goes_past[1 - side])
+            let is_walled = walled_sides(place.views[1], self.strip);
+            (0..2).any(|side| is_walled[side] && goes_past[1 - side])
                 && (!self.may_be_bay() || self.expected().is_some_and(|expected| expected < AT_WALL))
+                && self.context.bars.are_bare(self.n)
         };
         let is_of_bays = || self.is_told_within() && self.may_be_bay();
         self.own.rows.len() > 1
@@ -346,8 +347,8 @@ impl<'a> Asked<'a> {
     }
 }
 
-/// Along which of a strip's sides a wall runs all along.
-fn walls(view: &Turned, strip: &Strip) -> [bool; 2] {
+/// Along which of a strip's sides a wall runs from end to end.
+fn walled_sides(view: &Turned, strip: &Strip) -> [bool; 2] {
     let columns = view.columns(strip.along);
     [0, 1].map(|n| {
         let side = strip.across[n];
