@@ -197,12 +197,12 @@ def test_a_passage_between_two_halls_opens_into_that_one_from_which_it_was_seen(
 
 @pytest.mark.parametrize(
     ("turn", "first", "depth", "gaps"),
-    [(42.8, 4.6, 1.3, (3.2, 7.4, 11)), (28.5, 5.4, 1.5, (1.2, 4.1, 7.3)), (38.7, 4.8, 1.9, (2.5, 7.3, 11))],
+    [(28.8, 4.1, 1.5, (-0.1, 2.6, 7.3)), (35.3, 4.4, 1.1, (1.0, 6.1, 8.2)), (29.3, 4.5, 2.0, (0.3, 4.4, 6.1))],
 )
 def test_an_aisle_leads_into_a_wing_up_to_its_first_aisle_and_not_on_through_its_cross_aisle(
     turn: float, first: float, depth: float, gaps: tuple[float, float, float]
 ) -> None:
-    # The racks of the wing are parted where a passage of 3 m, in line with an aisle of the hall, would lead on.
+    # The racks of the wing are parted about where a passage of 3 m, in line with an aisle of the hall, would lead on.
     canvas = Canvas(1500, 1500)
 
     def box(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
