@@ -109,6 +109,8 @@ pub struct Bars<'a> {
     place: &'a Place<'a>,
     strips: &'a [Strip],
     rows: Vec<OnceCell<Closed<'a>>>,
+    /// How often something closes the sides of each strip in all rows that it passes through, once it is asked.
+    closed: Vec<OnceCell<Often>>,
 }
 
 /// A row, and how often it is closed at its ends, but for those at walls, and beside what is free of it and no way.
@@ -120,7 +122,9 @@ struct Closed<'a> {
 
 impl<'a> Bars<'a> {
     pub fn new(evidence: &'a Evidence, look: &'a Look, place: &'a Place, strips: &'a [Strip]) -> Self {
-        Self { evidence, look, place, strips, rows: place.rows.iter().map(|_| OnceCell::new()).collect() }
+        let rows = place.rows.iter().map(|_| OnceCell::new()).collect();
+        let closed = strips.iter().map(|_| OnceCell::new()).collect();
+        Self { evidence, look, place, strips, rows, closed }
     }
 
     /// True when what one of the strips passes through of the rows, between their ends, lies between bars: it is no narrower than a
@@ -174,8 +178,7 @@ impl<'a> Bars<'a> {
                 && other.rows.iter().all(|row| part.contains(row))
         };
         let others: Vec<usize> = (0..self.strips.len()).filter(is_alike).collect();
-        let sides = others.iter().filter_map(|&m| self.told(m, &self.place.passing[m].rows)).map(|told| told.sides);
-        let sides = told.sides.and(sides.sum());
+        let sides = told.sides.and(others.iter().map(|&m| self.closed(m)).sum());
         let is_of_two_racks = |m: &&usize| self.place.are_double(&self.place.passing[**m]);
         let double = iter::once(&n).chain(&others).filter(is_of_two_racks).count();
         others.len() >= OTHERS && DOUBLE * double > others.len() && Told { sides, ..told }.is_way()
@@ -274,10 +277,22 @@ impl<'a> Bars<'a> {
     fn told(&self, n: usize, rows: &[usize]) -> Option<Told> {
         let first = self.place.first_of(&self.place.passing[n]).filter(|_| self.place.passing[n].is_within)?;
         let [ends, bays] = self.ends_and_bays(first);
+        let is_all = rows == self.place.passing[n].rows;
+        let sides = if is_all { self.closed(n) } else { self.closed_in(n, rows) };
+        Some(Told { sides, ends, bays })
+    }
+
+    /// How often the rows that one of the strips passes through are closed at its sides.
+    fn closed(&self, n: usize) -> Often {
+        *self.closed[n].get_or_init(|| self.closed_in(n, &self.place.passing[n].rows))
+    }
+
+    /// The same of some rows.
+    fn closed_in(&self, n: usize, rows: &[usize]) -> Often {
         let sides = |&row: &usize| {
             Often::of(self.sides(n, row).into_iter().map(|side| self.row(row).columns.is_closed_at(side)))
         };
-        Some(Told { sides: rows.iter().map(sides).sum(), ends, bays })
+        rows.iter().map(sides).sum()
     }
 
     /// How often the rows are closed at their ends, and beside bays, in the part of the place that a row is of.
