@@ -4,7 +4,7 @@
 use super::lead::Lead;
 use super::passing::Place;
 use super::walled;
-use crate::ends::{holds, overlap, wider};
+use crate::ends::{overlap, wider};
 use crate::labels::Evidence;
 use crate::labels::corridors::Strip;
 use crate::labels::junctions::meeting::CLUTTER;
@@ -18,18 +18,14 @@ use std::iter::{self, Sum};
 const NEAR: f64 = 0.3;
 /// What lies between bars is no narrower than so many bays: posts or goods narrow an empty one.
 const AS_WIDE: f64 = 0.95;
-/// From so many bays to so many is none that is empty, which posts or goods narrow by less, and pallets by more. What is so wide
-/// may be a way where so many others are too, but for so much, metres, and bars end so many times as many rows as they do not.
-const NARROW: [f64; 2] = [0.75, 0.88];
-const OTHERS: usize = 3;
 /// Posts and goods narrow no empty bay by so much, metres; half of one, with what goods leave beside it, is no wider than this share.
 const NARROWER: f64 = 0.4;
 const MORE_THAN_HALF: f64 = 0.62;
 /// Of all that are as wide but for so much, metres, as where posts and goods narrow them, one in so many leads through two racks.
-const ALL_ALIKE: f64 = 0.16;
+const ALIKE: f64 = 0.16;
 const DOUBLE: usize = 3;
-const ALIKE: f64 = 0.06;
-const ENDS: u32 = 8;
+/// Fewer others tell nothing.
+const OTHERS: usize = 3;
 /// What shares so much of a way's width is in line with it.
 const IN_LINE: f64 = 0.5;
 /// A way is told from an empty bay by its sides when these are so many times as likely those of the one as those of the other.
@@ -127,35 +123,12 @@ impl<'a> Bars<'a> {
         Self { evidence, look, place, strips, rows, closed }
     }
 
-    /// True when what one of the strips passes through of the rows, between their ends, lies between bars: it is no narrower than a
-    /// bay, or several through other rows are as wide.
+    /// True when what one of the strips passes through of the rows, between their ends, lies between bars and is no narrower than a
+    /// bay, if bays are known.
     pub fn are_beside(&self, n: usize) -> bool {
         let bay = self.place.pitch_of(&self.place.passing[n]);
-        let is_as_wide = |bay: f64| self.strips[n].width() >= AS_WIDE * bay;
-        if bay.is_none_or(is_as_wide) {
-            return self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_way());
-        }
-        bay.is_some_and(|bay| holds(NARROW.map(|part| part * bay), self.strips[n].width()))
-            && self.are_beside_several(n)
-    }
-
-    /// True when one of the strips lies between bars, and so do several as wide through other rows, where bars end nearly all
-    /// rows: all told they stand there as at rows' ends.
-    fn are_beside_several(&self, n: usize) -> bool {
-        let is_between = |n: usize| {
-            let told = self.told(n, &self.place.passing[n].rows)?;
-            (told.sides.open == 0 && told.ends.closed >= ENDS * told.ends.open).then_some(told)
-        };
-        let is_alike = |&m: &usize| {
-            let [own, other] = [n, m].map(|n| &self.place.passing[n].rows);
-            (self.strips[m].width() - self.strips[n].width()).abs() <= ALIKE
-                && !own.iter().any(|row| other.contains(row))
-        };
-        let Some(told) = is_between(n) else { return false };
-        let others = (0..self.strips.len()).filter(is_alike).filter_map(is_between);
-        let others: Vec<Often> = others.map(|told| told.sides).collect();
-        let are_several = others.len() >= OTHERS && (told.bays.open + told.bays.closed) as usize > others.len();
-        are_several && Told { sides: told.sides.and(others.into_iter().sum()), ..told }.is_way()
+        bay.is_none_or(|bay| self.strips[n].width() >= AS_WIDE * bay)
+            && self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_way())
     }
 
     /// True when one of the strips lies between bars and is too narrow for a bay, and what is as wide in its part of the place lies
@@ -173,7 +146,7 @@ impl<'a> Bars<'a> {
             let other = &self.place.passing[m];
             m != n
                 && other.is_within
-                && (self.strips[m].width() - width).abs() <= ALL_ALIKE
+                && (self.strips[m].width() - width).abs() <= ALIKE
                 && !other.rows.is_empty()
                 && other.rows.iter().all(|row| part.contains(row))
         };
