@@ -124,7 +124,7 @@ def test_ways_narrower_than_bays_through_one_row_each_are_ways_where_as_wide_one
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_ways_through_one_row_each_are_ways_where_most_lie_between_bars_of_two_racks(seed: int) -> None:
+def test_ways_narrower_than_bays_are_ways_through_single_racks_too_where_as_many_lead_through_two(seed: int) -> None:
     """Six rows of 15 bays, of two racks and of one by turns, each parted by a way; a fifth of the goods is gone."""
     draws = np.random.default_rng(seed)
 

@@ -12,7 +12,7 @@ use crate::labels::view::turned::Turned;
 const ASKEW: [f64; 2] = [0.2, 0.97];
 /// Somewhere between two of them so much of its width is taken, but for its very sides.
 const TAKEN: f64 = 0.02;
-/// Along no more than this share of it the ground ends at either of its sides.
+/// The shares of it along which the ground ends at its one side and at the other are less than this together.
 const EDGED: f64 = 0.25;
 /// Ground ends where this share of what lies beyond a side is not free, and of what lies within no more than the rest.
 const ENDS: f64 = 0.8;
