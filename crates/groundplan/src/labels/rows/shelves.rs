@@ -25,9 +25,16 @@ impl Shelves {
     pub fn new(view: &Turned, row: &Row) -> Self {
         let columns = view.column(row.along[0])..view.column(row.along[1]);
         let middle = f64::midpoint(row.across[0], row.across[1]);
+        // The ground of racks on legs is taken; their empty bays are those in which nothing stands.
+        let on_legs = view.on_legs_at(middle, columns.clone());
         let halves = [[row.across[0], middle], [middle, row.across[1]]].map(|[low, high]| {
             let blocked = view.blocked_where(columns.clone(), low, high, |share| share > LEFT);
-            runs(&(0..columns.len()).map(|n| !blocked.get(n)).collect::<Vec<_>>(), true)
+            let mut open: Vec<bool> = (0..columns.len()).map(|n| !blocked.get(n)).collect();
+            if !on_legs.is_empty() {
+                let stands = view.some_occupied(columns.clone(), low, high);
+                on_legs.iter().flat_map(|&(from, to)| from..to).for_each(|n| open[n] |= stands[n] <= 0.0);
+            }
+            runs(&open, true)
         });
         Self { row: row.clone(), columns, halves, faces: OnceCell::new() }
     }

@@ -5,6 +5,7 @@ use super::lined::Lined;
 use super::look::{LANES, Look};
 use super::panes::{Across, Pane};
 use super::quarter::Quarter;
+use super::runs::Run;
 use super::summed::Summed;
 use super::sums::{Cells, Known, Told, What, are_many};
 use crate::bits::Bits;
@@ -210,6 +211,14 @@ impl Turned {
     pub(super) fn key_of_grounds(&self, key: Key, rows: &Range<usize>) -> Key {
         let [low, high] = [rows.start, rows.end].map(|n| self.start[1] + n as f64 * self.cell);
         self.grounds.key(key, rows, [low, high])
+    }
+
+    /// From which to which of some columns, counted from the first of them, the ground of racks on legs lies at a place across.
+    pub fn on_legs_at(&self, v: f64, columns: Range<usize>) -> Vec<Run> {
+        let row = ((v - self.start[1]) / self.cell).max(0.0) as usize;
+        let within = |u: f64| self.column(u).clamp(columns.start, columns.end) - columns.start;
+        let grounds = self.grounds.at(row, v).map(|[from, to]| (within(from), within(to)));
+        grounds.filter(|(from, to)| from < to).collect()
     }
 
     /// True when the cells are too many for sums of all rows.
