@@ -31,13 +31,13 @@ pub fn are_about(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> 
 /// those that a strip leads through, and of all of their part, is so elsewhere; nothing where it leads through walls alone. What
 /// else is as wide counts as empty bays, but for what leads through all rows or through the same ones: of several ways none
 /// speaks against another.
-pub fn expected(place: &Place, strips: &[Strip], n: usize) -> Option<f64> {
+pub fn expected(place: &Place, strips: &[Strip], n: usize, are_bare: bool) -> Option<f64> {
     let (own, width) = (&place.passing[n], strips[n].width());
     let part = place.rows_with(place.first_of(own)?);
     let is_way = |other: &Passing| other.is_within && other.is_whole() || own.racks > 1 && other.rows == own.rows;
     let is_left_out = |way: usize| way == n || is_way(&place.passing[way]) || !are_alike(strips[way].width(), width);
     let places = |columns: usize| columns as f64 * place.views[0].cell / width;
-    let of_row = |row: usize| open_without(place, strips, row, width, is_left_out).map(places);
+    let of_row = |row: usize| open_without(place, strips, row, width, are_bare, is_left_out).map(places);
     let all: Vec<[f64; 2]> = part.iter().map(|&row| of_row(row)).collect();
     let [open, count] = all.iter().fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
     // As if half a place more were open and one more were there: few tell little.
@@ -51,15 +51,16 @@ pub fn expected(place: &Place, strips: &[Strip], n: usize) -> Option<f64> {
 
 /// How many columns of a row are open over as much as a width, and how many there are, both without those of its ways.
 fn open_besides(place: &Place, strips: &[Strip], row: usize, width: f64) -> [usize; 2] {
-    open_without(place, strips, row, width, |_| true)
+    open_without(place, strips, row, width, false, |_| true)
 }
 
-/// The same without those of some of its ways.
+/// The same without those of some of its ways; and if they are to be bare nothing stands along their faces either, as beams do.
 fn open_without(
     place: &Place,
     strips: &[Strip],
     row: usize,
     width: f64,
+    are_bare: bool,
     is_left_out: impl Fn(usize) -> bool,
 ) -> [usize; 2] {
     let shelves = place.shelves(row);
@@ -72,7 +73,11 @@ fn open_without(
     ways.retain(|(from, to)| from < to);
     ways.sort_unstable();
     let least = (seldom::AS_WIDE * width / place.views[0].cell) as usize;
-    let wide = outside(&shelves.open(), &ways).into_iter().filter(|(from, to)| to - from >= least);
+    let mut open = shelves.open();
+    if are_bare {
+        open = shelves.faces(place.views[0]).iter().fold(open, |open, face| outside(&open, face));
+    }
+    let wide = outside(&open, &ways).into_iter().filter(|(from, to)| to - from >= least);
     [length(wide), length(outside(&[(0, shelves.count())], &ways))]
 }
 

@@ -191,7 +191,7 @@ impl<'a> Asked<'a> {
     fn is_way(&self) -> bool {
         let bars = &self.context.bars;
         if !self.is_open_to_question() {
-            return true;
+            return !self.is_likely_through_all();
         }
         match (self.is_as_ways_are(), self.lies_as_bays()) {
             (true, false) => !bars.are_missed(self.n),
@@ -201,6 +201,13 @@ impl<'a> Asked<'a> {
                 self.is_between_bars_of_two_racks() || !self.is_told_within() && bars.are_beside_all(self.n)
             }
         }
+    }
+
+    /// True when it leads through all rows of its part between their ends and is as wide as one bay, and chance would open as
+    /// many at some place.
+    fn is_likely_through_all(&self) -> bool {
+        let expected = || empties::expected(self.context.place, self.context.strips, self.n, true);
+        self.own.is_whole() && self.is_anywhere() && expected().is_some_and(|expected| expected > ANYWHERE)
     }
 
     /// True when it leads through some rows alone of those beside one another, and something tells of these: what leads past the
@@ -262,7 +269,7 @@ impl<'a> Asked<'a> {
 
     /// How many as wide chance would open through as many rows, if it can be told.
     fn expected(&self) -> Option<f64> {
-        *self.expected.get_or_init(|| empties::expected(self.context.place, self.context.strips, self.n))
+        *self.expected.get_or_init(|| empties::expected(self.context.place, self.context.strips, self.n, false))
     }
 
     /// True when it is as wide as one bay, and chance would open rows so anyhow, whatever else is as wide.
