@@ -22,7 +22,7 @@ const OUTLINED: (f64, f64) = (0.5, 0.05);
 /// No robot comes through a gap that is narrower, metres.
 pub const WAY_IN: f64 = 0.5;
 /// A place has racks when it has so many, and so many metres of them for a metre of corridor: of offices that were looked at
-/// what lies between corridors is .28 at most, of warehouses .31 at least (docs/approaches.md).
+/// what lies between corridors is .28 at most, of warehouses .31 at least (docs/approaches/racks.md).
 const PLACE: (usize, f64) = (3, 0.29);
 /// So many between two corridors are enough where bays recur along them.
 const WITH_BAYS: usize = 2;
