@@ -6,7 +6,9 @@ use std::ops::Range;
 /// Lags are counted in steps of this many metres, between the shortest and the longest that are looked at, and twice that.
 pub const STEP: f64 = 0.05;
 pub const LAGS: (f64, f64) = (1.6, 6.0);
-pub const FIRST: usize = (LAGS.0 / STEP) as usize;
+/// The shortest one of which twice as much may be told for it, metres.
+const HALF: f64 = 1.0;
+pub const FIRST: usize = (HALF / STEP) as usize;
 pub const LAST: usize = (LAGS.1 / STEP) as usize;
 pub const COUNTED: Range<usize> = FIRST - BASE..2 * (LAST + BASE) + 1;
 /// Steps to either side of a lag that are of one post, and such that show what is chance.
@@ -67,8 +69,10 @@ impl Counts {
         let found: Vec<f64> = (0..all.len()).map(|n| if may_be[n] { clear(n) } else { 0.0 }).collect();
         let top = |n: usize| found[n.saturating_sub(TOP)..].iter().take(2 * TOP + 1).all(|other| *other <= found[n]);
         let tops = (0..found.len()).filter(|&n| found[n] >= CONTRAST && top(n));
-        let tops: Vec<(usize, f64)> = tops.map(|n| (FIRST + n, all[n][0].0)).collect();
+        let tops = tops.map(|n| (FIRST + n, all[n][0].0));
+        let (shelves, tops): (Vec<_>, Vec<_>) = tops.partition(|top| (top.0 as f64) * STEP < LAGS.0);
         let lag = one_bay(shortest(&tops)?, |lag| clear(lag - FIRST));
+        let lag = half(&shelves, lag, all[lag - FIRST][0].0);
         Some(between_steps(&self.pairs, lag) * STEP)
     }
 }
@@ -146,6 +150,13 @@ fn one_bay(lag: usize, clear: impl Fn(usize) -> f64) -> usize {
         (middle - POST..=middle + POST).max_by(|one, two| clear(*one).total_cmp(&clear(*two)))
     };
     BAYS.into_iter().filter_map(clearest).find(|&bay| clear(bay) >= PARTIAL).unwrap_or(lag)
+}
+
+/// The lag of one bay where shelves are shorter than any way is wide, and that of two stands out of what is as long as bays; how
+/// many pairs are as far apart as that is known.
+fn half(shelves: &[(usize, f64)], lag: usize, pairs: f64) -> usize {
+    let is_half = |shelf: &&(usize, f64)| (2 * shelf.0).abs_diff(lag) <= POST && shelf.1 >= pairs;
+    shelves.iter().find(is_half).map_or(lag, |shelf| shelf.0)
 }
 
 /// A length in whole parts of a step, metres.
