@@ -22,6 +22,7 @@ const PARTS: f64 = 2.0;
 /// may have it is nearly as strong, or goods recur there, of which several stand in a bay.
 const FUNDAMENTAL: f64 = 0.7;
 const GOODS: f64 = 0.9;
+const SHELVES: [f64; 2] = [0.6, 0.75];
 /// No bay is longer than beams are, metres: what is told to be longer is two of them, or one and a half with a leg in each
 /// one's middle. Where most are full few posts are seen from one to the next: the one stands out by the other factor.
 pub const LONGEST: f64 = 3.9;
@@ -72,7 +73,7 @@ impl Counts {
         let tops = tops.map(|n| (FIRST + n, all[n][0].0));
         let (shelves, tops): (Vec<_>, Vec<_>) = tops.partition(|top| (top.0 as f64) * STEP < LAGS.0);
         let lag = one_bay(shortest(&tops)?, |lag| clear(lag - FIRST));
-        let lag = half(&shelves, lag, all[lag - FIRST][0].0);
+        let lag = half(&shelves, lag, |lag| self.excess(1, lag).0);
         Some(between_steps(&self.pairs, lag) * STEP)
     }
 }
@@ -152,10 +153,15 @@ fn one_bay(lag: usize, clear: impl Fn(usize) -> f64) -> usize {
     BAYS.into_iter().filter_map(clearest).find(|&bay| clear(bay) >= PARTIAL).unwrap_or(lag)
 }
 
-/// The lag of one bay where shelves are shorter than any way is wide, and that of two stands out of what is as long as bays; how
-/// many pairs are as far apart as that is known.
-fn half(shelves: &[(usize, f64)], lag: usize, pairs: f64) -> usize {
-    let is_half = |shelf: &&(usize, f64)| (2 * shelf.0).abs_diff(lag) <= POST && shelf.1 >= pairs;
+/// The lag of one bay where shelves are shorter than any way is wide, and that of two stands out of what is as long as bays: it
+/// recurs as often, and so does what is three times as long, where of two pallets to a bay that does not; by how many pairs each
+/// lag stands out.
+fn half(shelves: &[(usize, f64)], lag: usize, pairs: impl Fn(usize) -> f64) -> usize {
+    let is_half = |shelf: &&(usize, f64)| {
+        (2 * shelf.0).abs_diff(lag) <= POST
+            && shelf.1 >= SHELVES[0] * pairs(lag)
+            && pairs(lag + shelf.0) >= SHELVES[1] * pairs(lag)
+    };
     shelves.iter().find(is_half).map_or(lag, |shelf| shelf.0)
 }
 
