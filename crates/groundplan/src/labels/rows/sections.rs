@@ -48,6 +48,9 @@ const FREE: f64 = 0.12;
 /// A rack that is drawn by its outline stands on both its faces over so much of its length at least: not all of them may have
 /// been hit.
 const OUTLINED: f64 = 0.7;
+/// A patch that nobody saw between rays is no longer, metres, and has floor in so many columns on each side.
+const PATCH: f64 = 1.2;
+const BESIDE: usize = 3;
 /// Structure this near to a face stands on it, metres.
 pub const FACE: f64 = 0.25;
 
@@ -114,6 +117,7 @@ impl<'a> Columns<'a> {
             made.faces.push([0, 1].map(|face| share(&faces[face]) > 0.0));
         }
         made.stops = (0..count).map(|n| made.stands(n)).collect();
+        made.pass_unseen();
         if pitch.is_none() {
             made.pass_by();
         }
@@ -327,6 +331,31 @@ impl<'a> Columns<'a> {
         let near = n.saturating_sub(1)..(n + 2).min(self.faces.len());
         let stands = |face: usize| self.faces[near.clone()].iter().any(|faces| faces[face]);
         self.blocked[n] >= TAKEN || (self.faces[n].contains(&true) && stands(0) && stands(1))
+    }
+
+    /// Passes by patches that nobody saw and in which nothing stands, where floor was seen on both sides: rays leave such
+    /// between them.
+    fn pass_unseen(&mut self) {
+        let is_floor = |made: &Self, n: usize| !made.stops[n] && made.blocked[n] <= LEFT;
+        let unseen: Vec<bool> = (0..self.stops.len()).map(|n| !is_floor(self, n)).collect();
+        for (from, to) in runs(&unseen, true) {
+            let has_floor = from >= BESIDE
+                && to + BESIDE <= unseen.len()
+                && !unseen[from - BESIDE..from].contains(&true)
+                && !unseen[to..to + BESIDE].contains(&true);
+            let is_patch = has_floor && (to - from) as f64 * self.view.cell <= PATCH;
+            if is_patch && self.faces[from..to].iter().all(|faces| *faces == [false; 2]) && self.is_empty(from, to) {
+                self.stops[from..to].fill(false);
+                self.blocked[from..to].fill(0.0);
+            }
+        }
+    }
+
+    /// True when nothing stands in some columns, be they seen or not.
+    fn is_empty(&self, from: usize, to: usize) -> bool {
+        let columns = self.view.columns([self.place(from), self.place(to)]);
+        let [low, high] = self.row.across;
+        self.view.some_occupied(columns, low, high).iter().all(|share| *share <= 0.0)
     }
 
     /// Passes by what stands in the row and closes no rack's depth anywhere, unless it is two posts across from each
