@@ -18,6 +18,8 @@ const ALIKE_RAGGED: f64 = 0.5;
 const APART: f64 = 3.0;
 /// Between them the floor is free but for this share.
 const CLUTTER: f64 = 0.1;
+/// Where nothing stands a patch that nobody saw, so long, metres, parts no way.
+const UNSEEN: f64 = 0.6;
 /// A way lies within another when it shares more than this of its length, and of the narrower one's width.
 const WITHIN: f64 = 0.5;
 /// What stands so near to the sides, in widths, does not bar the way.
@@ -162,8 +164,13 @@ fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], least: f64, [a,
     let margin = MARGIN * (high - low);
     let [from, to] = between.map(|u| view.column(u));
     let columns = from.saturating_sub(1)..to + 1;
-    view.mean_blocked(columns.clone(), low + margin, high - margin) <= CLUTTER
-        && !view.some_closed(columns.clone(), low + margin, high - margin).any()
-        && !barriers::among(view, [low, high], columns.clone()).any()
-        && barriers::stops(view, [low, high], columns).is_empty()
+    let is_unseen = || {
+        let stands = view.some_occupied(columns.clone(), low + margin, high - margin);
+        gap <= UNSEEN && stands.iter().all(|share| *share <= 0.0)
+    };
+    is_unseen()
+        || view.mean_blocked(columns.clone(), low + margin, high - margin) <= CLUTTER
+            && !view.some_closed(columns.clone(), low + margin, high - margin).any()
+            && !barriers::among(view, [low, high], columns.clone()).any()
+            && barriers::stops(view, [low, high], columns).is_empty()
 }

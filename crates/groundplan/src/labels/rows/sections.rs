@@ -48,8 +48,8 @@ const FREE: f64 = 0.12;
 /// A rack that is drawn by its outline stands on both its faces over so much of its length at least: not all of them may have
 /// been hit.
 const OUTLINED: f64 = 0.7;
-/// A patch that nobody saw between rays is no longer, metres, and has floor in so many columns on each side.
-const PATCH: f64 = 1.2;
+/// A patch that nobody saw between rays is no longer, metres, and has floor in so many columns on each side at least.
+const PATCH: f64 = 2.0;
 const BESIDE: usize = 3;
 /// Structure this near to a face stands on it, metres.
 pub const FACE: f64 = 0.25;
@@ -333,17 +333,18 @@ impl<'a> Columns<'a> {
         self.blocked[n] >= TAKEN || (self.faces[n].contains(&true) && stands(0) && stands(1))
     }
 
-    /// Passes by patches that nobody saw and in which nothing stands, where floor was seen on both sides: rays leave such
-    /// between them.
+    /// Passes by patches that nobody saw and in which nothing stands, where floor was seen for half as much on both sides: rays leave
+    /// such between them.
     fn pass_unseen(&mut self) {
         let is_floor = |made: &Self, n: usize| !made.stops[n] && made.blocked[n] <= LEFT;
         let unseen: Vec<bool> = (0..self.stops.len()).map(|n| !is_floor(self, n)).collect();
         for (from, to) in runs(&unseen, true) {
-            let has_floor = from >= BESIDE
-                && to + BESIDE <= unseen.len()
-                && !unseen[from - BESIDE..from].contains(&true)
-                && !unseen[to..to + BESIDE].contains(&true);
-            let is_patch = has_floor && (to - from) as f64 * self.view.cell <= PATCH;
+            let beside = ((to - from) / 2).max(BESIDE);
+            let is_patch = (to - from) as f64 * self.view.cell <= PATCH
+                && from >= beside
+                && to + beside <= unseen.len()
+                && !unseen[from - beside..from].contains(&true)
+                && !unseen[to..to + beside].contains(&true);
             if is_patch && self.faces[from..to].iter().all(|faces| *faces == [false; 2]) && self.is_empty(from, to) {
                 self.stops[from..to].fill(false);
                 self.blocked[from..to].fill(0.0);
