@@ -38,6 +38,8 @@ const LEFT: f64 = 0.5;
 const NARROWER: f64 = family::LED_TO;
 /// What posts leave of a strip is so much narrower, metres.
 const NARROWED: f64 = 0.3;
+/// What a row leaves open is as wide as a way where its ends are so near to its sides, metres.
+const AS_WIDE: f64 = 0.35;
 /// What goes on so far beyond the rows, metres, is a way there.
 const BEYOND: f64 = 2.0;
 
@@ -296,7 +298,19 @@ fn cross(
         true => Passes::Before,
         false => Passes::Within,
     };
-    let way = if at_end { columns.may_end_at(sides) } else { ways.iter().any(|way| way[0] < u && u < way[1]) };
+    let outer = [between[0].across[0], between[1].across[1]].map(along);
+    // What is long enough for a way by itself on one side of the row and finds the row open as wide as it is goes on there.
+    let goes_on = || {
+        let [from, to] = sorted(outer);
+        let is_long = [[strip.along[0], from], [to, strip.along[1]]].into_iter().any(|[from, to]| {
+            !corridors::is_short(to - from, strip.width())
+                && sided::is_sided(other, &Strip { along: [from, to], ..strip.clone() })
+        });
+        let is_as_wide = |gap: [f64; 2]| [0, 1].into_iter().all(|side| (gap[side] - sides[side]).abs() <= AS_WIDE);
+        is_long && columns.gap_about(u).is_some_and(is_as_wide)
+    };
+    let way =
+        if at_end { columns.may_end_at(sides) } else { ways.iter().any(|way| way[0] < u && u < way[1]) || goes_on() };
     let free = columns.is_free(sides).then(|| columns.free_elsewhere(sides));
     let across = |u: f64| other.place(view.to_map([u, middle]))[1];
     let along_of = |places: [f64; 2]| sorted(places.map(along));
