@@ -14,7 +14,7 @@ use crate::parameters::Parameters;
 use std::ops::Range;
 
 /// It is so deep at least, metres, and so many times as deep as wide; and is looked into no farther than that.
-const DEEP: (f64, f64) = (2.0, 0.5);
+const DEEP: (f64, f64) = (1.2, 0.3);
 const LOOK: f64 = 8.0;
 /// The rows beside it end no farther than this from the side of what leads past them, and its sides are as near to their
 /// corners, metres.
