@@ -203,11 +203,14 @@ impl<'a> Asked<'a> {
         }
     }
 
-    /// True when it leads through all rows of its part between their ends and is as wide as one bay, and chance would open as
-    /// many at some place.
+    /// True when it leads through all rows of its part between their ends and is as wide as one bay, chance would open as many at
+    /// some place, and bars do not tell otherwise.
     fn is_likely_through_all(&self) -> bool {
         let expected = || empties::expected(self.context.place, self.context.strips, self.n, true);
-        self.own.is_whole() && self.is_anywhere() && expected().is_some_and(|expected| expected > ANYWHERE)
+        self.own.is_whole()
+            && self.is_anywhere()
+            && expected().is_some_and(|expected| expected > ANYWHERE)
+            && !self.context.bars.stand_beside_no_bays(self.n)
     }
 
     /// True when it leads through some rows alone of those beside one another, and something tells of these: what leads past the
