@@ -18,7 +18,7 @@ const ALIKE_RAGGED: f64 = 0.5;
 const APART: f64 = 3.0;
 /// Between them the floor is free but for this share.
 const CLUTTER: f64 = 0.1;
-/// Where nothing stands a patch that nobody saw, so long, metres, parts no way.
+/// What lies between them for so much, metres, need not have been seen, where nothing stands in it.
 const UNSEEN: f64 = 0.6;
 /// A way lies within another when it shares more than this of its length, and of the narrower one's width.
 const WITHIN: f64 = 0.5;
@@ -164,13 +164,12 @@ fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], least: f64, [a,
     let margin = MARGIN * (high - low);
     let [from, to] = between.map(|u| view.column(u));
     let columns = from.saturating_sub(1)..to + 1;
-    let is_unseen = || {
-        let stands = view.some_occupied(columns.clone(), low + margin, high - margin);
-        gap <= UNSEEN && stands.iter().all(|share| *share <= 0.0)
-    };
-    is_unseen()
-        || view.mean_blocked(columns.clone(), low + margin, high - margin) <= CLUTTER
+    let is_unseen = || gap <= UNSEEN && !view.stands_in(columns.clone(), [low + margin, high - margin]);
+    let is_free = || {
+        view.mean_blocked(columns.clone(), low + margin, high - margin) <= CLUTTER
             && !view.some_closed(columns.clone(), low + margin, high - margin).any()
-            && !barriers::among(view, [low, high], columns.clone()).any()
-            && barriers::stops(view, [low, high], columns).is_empty()
+    };
+    (is_free() || is_unseen())
+        && !barriers::among(view, [low, high], columns.clone()).any()
+        && barriers::stops(view, [low, high], columns).is_empty()
 }

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Lags are counted in steps of this many metres, between the shortest and the longest that are looked at, and twice that.
+/// Lags are counted in steps of this many metres, between the shortest that bays have by themselves and the longest, and twice
+/// that.
 pub const STEP: f64 = 0.05;
 pub const LAGS: (f64, f64) = (1.6, 6.0);
-/// The shortest one of which twice as much may be told for it, metres.
-const HALF: f64 = 1.0;
-pub const FIRST: usize = (HALF / STEP) as usize;
+/// What recurs at less, but no less than this, metres, is told by what is so many times as long.
+const SHORTEST: f64 = 1.0;
+pub const FIRST: usize = (SHORTEST / STEP) as usize;
 pub const LAST: usize = (LAGS.1 / STEP) as usize;
 pub const COUNTED: Range<usize> = FIRST - BASE..2 * (LAST + BASE) + 1;
 /// Steps to either side of a lag that are of one post, and such that show what is chance.
@@ -22,7 +23,9 @@ const PARTS: f64 = 2.0;
 /// may have it is nearly as strong, or goods recur there, of which several stand in a bay.
 const FUNDAMENTAL: f64 = 0.7;
 const GOODS: f64 = 0.9;
-const SHELVES: [f64; 2] = [0.6, 0.75];
+/// Shelves stand out by this share of what some of them do, and so many of them by that.
+const SHELF: f64 = 0.6;
+const SHELVES: f64 = 0.75;
 /// No bay is longer than beams are, metres: what is told to be longer is two of them, or one and a half with a leg in each
 /// one's middle. Where most are full few posts are seen from one to the next: the one stands out by the other factor.
 pub const LONGEST: f64 = 3.9;
@@ -63,8 +66,9 @@ impl Counts {
         (FIRST..=LAST).map(|lag| [1, 2].map(|times| self.excess(times, lag))).collect()
     }
 
-    /// The pitch, metres, of those of the lags that are looked at that may be one.
-    pub fn pitch(&self, may_be: &[bool]) -> Option<f64> {
+    /// The pitch, metres, of those of the lags that are looked at that may be one: as it stands out, and of the shelves that are
+    /// parts of it, if they are.
+    pub fn pitch(&self, may_be: &[bool]) -> Option<[f64; 2]> {
         let all = self.all();
         let clear = |n: usize| clear(all[n]);
         let found: Vec<f64> = (0..all.len()).map(|n| if may_be[n] { clear(n) } else { 0.0 }).collect();
@@ -73,8 +77,8 @@ impl Counts {
         let tops = tops.map(|n| (FIRST + n, all[n][0].0));
         let (shelves, tops): (Vec<_>, Vec<_>) = tops.partition(|top| (top.0 as f64) * STEP < LAGS.0);
         let lag = one_bay(shortest(&tops)?, |lag| clear(lag - FIRST));
-        let lag = half(&shelves, lag, |lag| self.excess(1, lag).0);
-        Some(between_steps(&self.pairs, lag) * STEP)
+        let shelf = of_shelves(&shelves, lag, |lag| self.excess(1, lag).0);
+        Some([lag, shelf].map(|lag| between_steps(&self.pairs, lag) * STEP))
     }
 }
 
@@ -153,16 +157,19 @@ fn one_bay(lag: usize, clear: impl Fn(usize) -> f64) -> usize {
     BAYS.into_iter().filter_map(clearest).find(|&bay| clear(bay) >= PARTIAL).unwrap_or(lag)
 }
 
-/// The lag of one bay where shelves are shorter than any way is wide, and that of two stands out of what is as long as bays: it
-/// recurs as often, and so does what is three times as long, where of two pallets to a bay that does not; by how many pairs each
-/// lag stands out.
-fn half(shelves: &[(usize, f64)], lag: usize, pairs: impl Fn(usize) -> f64) -> usize {
-    let is_half = |shelf: &&(usize, f64)| {
-        (2 * shelf.0).abs_diff(lag) <= POST
-            && shelf.1 >= SHELVES[0] * pairs(lag)
-            && pairs(lag + shelf.0) >= SHELVES[1] * pairs(lag)
+/// The lag of one shelf where these are shorter than any way is wide, and that of two or three stands out of what is as long as
+/// bays: it recurs, and its other multiples up to the next one do so as often, where of pallets that stand in a longer bay the
+/// odd ones do not; by how many pairs each lag stands out.
+fn of_shelves(shelves: &[(usize, f64)], lag: usize, pairs: impl Fn(usize) -> f64) -> usize {
+    let is_shelf = |&&(shelf, own): &&(usize, f64)| {
+        let times = (lag as f64 / shelf as f64).round() as usize;
+        let others = || (2..=times + 1).filter(|n| *n != times).map(|n| n * lag / times);
+        (2..=3).contains(&times)
+            && (times * shelf).abs_diff(lag) <= TOP
+            && own >= SHELF * pairs(lag)
+            && others().all(|other| pairs(other) >= SHELVES * pairs(lag))
     };
-    shelves.iter().find(is_half).map_or(lag, |shelf| shelf.0)
+    shelves.iter().find(is_shelf).map_or(lag, |shelf| shelf.0)
 }
 
 /// A length in whole parts of a step, metres.

@@ -49,7 +49,7 @@ const FREE: f64 = 0.12;
 /// been hit.
 const OUTLINED: f64 = 0.7;
 /// A patch that nobody saw between rays is no longer, metres, and has floor in so many columns on each side at least.
-const PATCH: f64 = 2.0;
+const PATCH: f64 = 1.0;
 const BESIDE: usize = 3;
 /// Structure this near to a face stands on it, metres.
 pub const FACE: f64 = 0.25;
@@ -333,30 +333,25 @@ impl<'a> Columns<'a> {
         self.blocked[n] >= TAKEN || (self.faces[n].contains(&true) && stands(0) && stands(1))
     }
 
-    /// Passes by patches that nobody saw and in which nothing stands, where floor was seen for half as much on both sides: rays leave
-    /// such between them.
+    /// Passes by patches that nobody saw and in which nothing stands, where floor was seen for half as much on both sides: rays
+    /// leave such between them.
     fn pass_unseen(&mut self) {
-        let is_floor = |made: &Self, n: usize| !made.stops[n] && made.blocked[n] <= LEFT;
-        let unseen: Vec<bool> = (0..self.stops.len()).map(|n| !is_floor(self, n)).collect();
-        for (from, to) in runs(&unseen, true) {
+        let is_no_floor = |n: usize| self.stops[n] || self.blocked[n] > LEFT;
+        let no_floor: Vec<bool> = (0..self.stops.len()).map(is_no_floor).collect();
+        for (from, to) in runs(&no_floor, true) {
             let beside = ((to - from) / 2).max(BESIDE);
             let is_patch = (to - from) as f64 * self.view.cell <= PATCH
                 && from >= beside
-                && to + beside <= unseen.len()
-                && !unseen[from - beside..from].contains(&true)
-                && !unseen[to..to + beside].contains(&true);
-            if is_patch && self.faces[from..to].iter().all(|faces| *faces == [false; 2]) && self.is_empty(from, to) {
+                && to + beside <= no_floor.len()
+                && !no_floor[from - beside..from].contains(&true)
+                && !no_floor[to..to + beside].contains(&true)
+                && self.faces[from..to].iter().all(|faces| *faces == [false; 2]);
+            let columns = || self.view.columns([self.place(from), self.place(to)]);
+            if is_patch && !self.view.stands_in(columns(), self.row.across) {
                 self.stops[from..to].fill(false);
                 self.blocked[from..to].fill(0.0);
             }
         }
-    }
-
-    /// True when nothing stands in some columns, be they seen or not.
-    fn is_empty(&self, from: usize, to: usize) -> bool {
-        let columns = self.view.columns([self.place(from), self.place(to)]);
-        let [low, high] = self.row.across;
-        self.view.some_occupied(columns, low, high).iter().all(|share| *share <= 0.0)
     }
 
     /// Passes by what stands in the row and closes no rack's depth anywhere, unless it is two posts across from each

@@ -155,6 +155,11 @@ impl Turned {
         self.shares(What::Occupied, columns, low, high)
     }
 
+    /// True when something stands in a range of columns between two places across.
+    pub fn stands_in(&self, columns: Range<usize>, [low, high]: [f64; 2]) -> bool {
+        self.some_occupied(columns, low, high).iter().any(|share| *share > 0.0)
+    }
+
     /// [`Turned::is_closed`] of a range of columns, the first of which is the first bit.
     pub fn some_closed(&self, columns: Range<usize>, low: f64, high: f64) -> Bits {
         let mut closed = self.blocked_where(columns.clone(), low, high, |blocked| blocked > IMPASSABLE);

@@ -127,8 +127,12 @@ impl<'a> Bars<'a> {
     /// bay, if bays are known.
     pub fn are_beside(&self, n: usize) -> bool {
         let bay = self.place.pitch_of(&self.place.passing[n]);
-        bay.is_none_or(|bay| self.strips[n].width() >= AS_WIDE * bay)
-            && self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_way())
+        bay.is_none_or(|bay| self.strips[n].width() >= AS_WIDE * bay) && self.tell(n)
+    }
+
+    /// True when bars stand beside what one of the strips passes through of the rows as at their ends, and not as beside bays.
+    pub fn tell(&self, n: usize) -> bool {
+        self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_way())
     }
 
     /// True when one of the strips lies between bars and is too narrow for a bay, and what is as wide in its part of the place lies

@@ -31,7 +31,16 @@ pub fn are_about(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> 
 /// those that a strip leads through, and of all of their part, is so elsewhere; nothing where it leads through walls alone. What
 /// else is as wide counts as empty bays, but for what leads through all rows or through the same ones: of several ways none
 /// speaks against another.
-pub fn expected(place: &Place, strips: &[Strip], n: usize, are_bare: bool) -> Option<f64> {
+pub fn expected(place: &Place, strips: &[Strip], n: usize) -> Option<f64> {
+    expected_of(place, strips, n, false)
+}
+
+/// The same of places along the faces of which nothing stands either.
+pub fn expected_bare(place: &Place, strips: &[Strip], n: usize) -> Option<f64> {
+    expected_of(place, strips, n, true)
+}
+
+fn expected_of(place: &Place, strips: &[Strip], n: usize, are_bare: bool) -> Option<f64> {
     let (own, width) = (&place.passing[n], strips[n].width());
     let part = place.rows_with(place.first_of(own)?);
     let is_way = |other: &Passing| other.is_within && other.is_whole() || own.racks > 1 && other.rows == own.rows;

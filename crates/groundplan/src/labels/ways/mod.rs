@@ -49,6 +49,8 @@ const SELDOM: f64 = 0.06;
 const AT_WALL: f64 = 0.001;
 /// What is as wide as a bay is an empty one where more would be.
 const ANYWHERE: f64 = 0.4;
+/// Posts leave so much of a bay, in pitches, or more.
+const ONE_BAY: f64 = 0.92;
 /// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
 const WALL: f64 = 0.9;
 const TAKEN: f64 = 0.2;
@@ -203,14 +205,16 @@ impl<'a> Asked<'a> {
         }
     }
 
-    /// True when it leads through all rows of its part between their ends and is as wide as one bay, chance would open as many at
-    /// some place, and bars do not tell otherwise.
+    /// True when it leads through all rows of its part between their ends and is just as wide as one bay, chance would open as many
+    /// at some place, and bars do not tell otherwise. Where something stands along their faces, as beams do, bays are closed.
     fn is_likely_through_all(&self) -> bool {
-        let expected = || empties::expected(self.context.place, self.context.strips, self.n, true);
+        let is_one_bay = || self.pitch().is_some_and(|pitch| (ONE_BAY * pitch..=pitch).contains(&self.width));
+        let expected = || empties::expected_bare(self.context.place, self.context.strips, self.n);
         self.own.is_whole()
-            && self.is_anywhere()
+            && self.own.is_within
+            && is_one_bay()
             && expected().is_some_and(|expected| expected > ANYWHERE)
-            && !self.context.bars.stand_beside_no_bays(self.n)
+            && !self.context.bars.tell(self.n)
     }
 
     /// True when it leads through some rows alone of those beside one another, and something tells of these: what leads past the
@@ -272,7 +276,7 @@ impl<'a> Asked<'a> {
 
     /// How many as wide chance would open through as many rows, if it can be told.
     fn expected(&self) -> Option<f64> {
-        *self.expected.get_or_init(|| empties::expected(self.context.place, self.context.strips, self.n, false))
+        *self.expected.get_or_init(|| empties::expected(self.context.place, self.context.strips, self.n))
     }
 
     /// True when it is as wide as one bay, and chance would open rows so anyhow, whatever else is as wide.
