@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
+from _legs import Box, legs
+from _legs import hall as drawn
 from PIL import Image
 from zoo import Picture, walled
 
@@ -379,3 +381,21 @@ def test_a_rack_ends_where_a_way_leads_through_be_that_as_narrow_as_the_aisles_o
     racks = groundplan.survey(picture, resolution=RESOLUTION).of_kind("rack")
     lengths = sorted(round(float(np.hypot(*np.subtract(*rack["axis"]))), 1) for rack in racks)
     assert lengths == pytest.approx([5.5] * 5 + [(140 - gap) * RESOLUTION] * 5, abs=0.25)
+
+
+@pytest.mark.parametrize("seed", [2, 11])
+def test_a_bay_that_is_empty_in_all_half_empty_rows_is_no_way(seed: int) -> None:
+    draws = np.random.default_rng(seed)
+
+    def boxes() -> Iterator[Box]:
+        for row in range(3):
+            low = 2.6 + 4.1 * row
+            for left, bays in ((4.0, 16), (46.4, 8)):
+                yield from legs(left, low, bays, 1.4, 2.4)
+                for bay in np.flatnonzero(draws.random(bays) < 0.62):
+                    yield left + 0.15 + 2.4 * bay, low + 0.05, left + 2.35 + 2.4 * bay, low + 1.35
+
+    survey = groundplan.survey(drawn(69.7, 13.8, boxes()), resolution=RESOLUTION)
+    types = sorted(junction["type"] for junction in survey.of_kind("junction"))
+    # The way between the blocks, and those before the rows' heads.
+    assert types == ["L"] * 4 + ["T"] * 6 + ["X"] * 2

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
+from _legs import Box, legs
+from _legs import hall as drawn
 from zoo import UNKNOWN, Picture, walled
 
 import groundplan
@@ -186,3 +190,47 @@ def test_an_aisle_ends_at_a_wall_of_which_the_middle_was_not_seen_and_not_at_a_d
     ends = [junction["at"] for junction in found.of_kind("junction") if junction["type"] == "end"]
     low = [y for x, y in ends if abs(x - 13.0) < 1]
     assert low == ([] if door else [pytest.approx(1.9, abs=0.15)])
+
+
+def with_patches(seed: int, rows: tuple[int, ...], wide: float) -> Picture:
+    """Three rows of racks in two blocks; in the way between these so much was not seen as deep as some of the rows."""
+    draws = np.random.default_rng(seed)
+
+    def boxes() -> Iterator[Box]:
+        for low in (2.6, 6.7, 10.8):
+            for left in (4.0, 26.4):
+                yield from legs(left, low, 8, 1.4, 2.4)
+                for bay in np.flatnonzero(draws.random(8) < 0.7):
+                    yield left + 0.15 + 2.4 * bay, low + 0.05, left + 2.35 + 2.4 * bay, low + 1.35
+
+    width, height = 49.7, 13.8
+    picture = drawn(width, height, boxes())[::-1].copy()
+
+    def pixel(place: float, length: float) -> int:
+        return int((place - length / 2) / RESOLUTION + len(picture) / 2)
+
+    for low in (2.4 + 4.1 * row for row in rows):
+        columns = slice(pixel(24.85 - wide / 2, width), pixel(24.85 + wide / 2, width))
+        picture[pixel(low, height) : pixel(low + 1.8, height), columns] = UNKNOWN
+    return np.ascontiguousarray(picture[::-1])
+
+
+@pytest.mark.parametrize("wide", [0.4, 0.9])
+@pytest.mark.parametrize(("seed", "rows"), [(1, (1,)), (0, (0, 1, 2)), (2, (0, 1, 2))])
+def test_a_patch_that_nobody_saw_between_rays_closes_no_way(seed: int, rows: tuple[int, ...], wide: float) -> None:
+    survey = groundplan.survey(with_patches(seed, rows, wide), resolution=RESOLUTION)
+    types = sorted(junction["type"] for junction in survey.of_kind("junction"))
+    assert types == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
+
+
+@pytest.mark.parametrize(
+    ("gap", "has_frame", "corridors"), [(4, False, 1), (8, False, 1), (8, True, 2), (18, False, 2)]
+)
+def test_a_corridor_goes_on_over_a_strip_that_nobody_saw_and_not_through_a_frame(
+    gap: int, has_frame: bool, corridors: int
+) -> None:
+    picture = walled(700, 44)
+    picture[20:64, 360 : 360 + gap] = UNKNOWN
+    if has_frame:
+        picture[20:23, 357 : 363 + gap] = picture[61:64, 357 : 363 + gap] = 0
+    assert len(groundplan.survey(picture, resolution=RESOLUTION).of_kind("corridor")) == corridors

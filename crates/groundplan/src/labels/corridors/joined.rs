@@ -20,6 +20,8 @@ const APART: f64 = 3.0;
 const CLUTTER: f64 = 0.1;
 /// What lies between them for so much, metres, need not have been seen, where nothing stands in it.
 const UNSEEN: f64 = 0.6;
+/// A frame reaches so far into a way, metres, where a side may be off by as much.
+const FRAME: f64 = 0.05;
 /// A way lies within another when it shares more than this of its length, and of the narrower one's width.
 const WITHIN: f64 = 0.5;
 /// What stands so near to the sides, in widths, does not bar the way.
@@ -164,7 +166,8 @@ fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], least: f64, [a,
     let margin = MARGIN * (high - low);
     let [from, to] = between.map(|u| view.column(u));
     let columns = from.saturating_sub(1)..to + 1;
-    let is_unseen = || gap <= UNSEEN && !view.stands_in(columns.clone(), [low + margin, high - margin]);
+    // A door's frame stands at the sides of what was not seen.
+    let is_unseen = || gap <= UNSEEN && !view.stands_in(columns.clone(), [low + FRAME, high - FRAME]);
     let is_free = || {
         view.mean_blocked(columns.clone(), low + margin, high - margin) <= CLUTTER
             && !view.some_closed(columns.clone(), low + margin, high - margin).any()

@@ -234,6 +234,17 @@ mod tests {
     }
 
     #[test]
+    fn shelves_are_told_by_their_other_multiples() {
+        // How often posts recur at so many steps: at all multiples of 25, or at odd ones seldom.
+        let pairs = |odd: f64| move |lag: usize| if lag / 25 % 2 == 1 { odd } else { 100.0 };
+        assert_eq!(of_shelves(&[(25, 80.0)], 50, pairs(90.0)), 25);
+        assert_eq!(of_shelves(&[(25, 80.0)], 75, pairs(90.0)), 25);
+        assert_eq!(of_shelves(&[(25, 80.0)], 50, pairs(40.0)), 50);
+        assert_eq!(of_shelves(&[(25, 50.0)], 50, pairs(90.0)), 50);
+        assert_eq!(of_shelves(&[(30, 90.0)], 50, pairs(90.0)), 50);
+    }
+
+    #[test]
     fn parts_count_each_pair_once_where_its_first_place_is() {
         let places: Vec<i32> = (0..2000).filter(|n| n % 7 == 0 || n % 11 == 3).collect();
         let mut all = vec![0.0; COUNTED.end];
