@@ -390,12 +390,12 @@ def test_a_bay_that_is_empty_in_all_half_empty_rows_is_no_way(seed: int) -> None
     def boxes() -> Iterator[Box]:
         for row in range(3):
             low = 2.6 + 4.1 * row
-            for left, bays in ((4.0, 16), (46.4, 8)):
+            for left, bays in ((4.0, 16), (4.0 + 16 * 2.4 + 4.0, 8)):
                 yield from legs(left, low, bays, 1.4, 2.4)
                 for bay in np.flatnonzero(draws.random(bays) < 0.62):
                     yield left + 0.15 + 2.4 * bay, low + 0.05, left + 2.35 + 2.4 * bay, low + 1.35
 
-    survey = groundplan.survey(drawn(69.7, 13.8, boxes()), resolution=RESOLUTION)
+    survey = groundplan.survey(drawn(8.0 + 24 * 2.4 + 4.1, 3 * 4.1 + 1.5, boxes()), resolution=RESOLUTION)
     types = sorted(junction["type"] for junction in survey.of_kind("junction"))
     # The way between the blocks, and those before the rows' heads.
     assert types == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
