@@ -271,21 +271,3 @@ def test_what_a_map_shows_twice_is_one_rack() -> None:
 
     found = counts(hall(25.0, 15.3, boxes()))
     assert found == {"rack": 3, "corridor": 6, "junction": 8, "pillar": 0}
-
-
-@pytest.mark.parametrize("seed", [1, 2, 3, 4, 7, 8])
-def test_a_way_two_shelves_wide_in_which_no_post_stands_is_no_shelf(seed: int) -> None:
-    draws = np.random.default_rng(seed)
-
-    def boxes() -> Iterator[Box]:
-        for n in range(4):
-            gap = int(draws.integers(6, 22))
-            for y in (3.0 + 4.6 * n, 3.9 + 4.6 * n):
-                for first, end in ((0, gap), (gap + 2, 30)):
-                    yield from legs(4.0 + 1.25 * first, y, end - first, 0.85, 1.25)
-                    for bay in first + np.flatnonzero(draws.random(end - first) < 0.8):
-                        yield 4.13 + 1.25 * bay, y + 0.05, 5.21 + 1.25 * bay, y + 0.8
-
-    survey = groundplan.survey(hall(45.5, 20.3, boxes()), resolution=RESOLUTION)
-    # One through each row, and one past the rows' ends on either side.
-    assert len([way for way in survey.of_kind("corridor") if way["name"][0] == "C"]) == 6

@@ -55,7 +55,7 @@ pub fn find(evidence: &Evidence, views: &[Turned], rows: &[Row]) -> Vec<Option<P
         let places = posts(pitch::specks_of(evidence, view), &own.iter().map(|&n| &rows[n]).collect::<Vec<_>>());
         let Some(common) = common(&places, evidence) else { continue };
         let lengths: Vec<usize> = own.iter().filter_map(|&n| nearly_whole(rows[n].length() / common)).collect();
-        let Some(times) = in_a_bay(common, &lengths, view.whole_pitch) else { continue };
+        let Some(times) = in_a_bay(common, &lengths, view.pitch) else { continue };
         let periods = map_each(own.len(), evidence.threads, |m| {
             let (places, along) = (&places[m], rows[own[m]].along);
             let key = || Key::default().numbers(places).number(common).with(times as u64).numbers(&along);

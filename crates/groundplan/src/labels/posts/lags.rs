@@ -3,13 +3,10 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Lags are counted in steps of this many metres, between the shortest that bays have by themselves and the longest, and twice
-/// that.
+/// Lags are counted in steps of this many metres, between the shortest and the longest that are looked at, and twice that.
 pub const STEP: f64 = 0.05;
 pub const LAGS: (f64, f64) = (1.6, 6.0);
-/// What recurs at less, but no less than this, metres, is told by what is so many times as long.
-const SHORTEST: f64 = 1.0;
-pub const FIRST: usize = (SHORTEST / STEP) as usize;
+pub const FIRST: usize = (LAGS.0 / STEP) as usize;
 pub const LAST: usize = (LAGS.1 / STEP) as usize;
 pub const COUNTED: Range<usize> = FIRST - BASE..2 * (LAST + BASE) + 1;
 /// Steps to either side of a lag that are of one post, and such that show what is chance.
@@ -23,9 +20,6 @@ const PARTS: f64 = 2.0;
 /// may have it is nearly as strong, or goods recur there, of which several stand in a bay.
 const FUNDAMENTAL: f64 = 0.7;
 const GOODS: f64 = 0.9;
-/// Shelves stand out by this share of what some of them do, and so many of them by that.
-const SHELF: f64 = 0.6;
-const SHELVES: f64 = 0.75;
 /// No bay is longer than beams are, metres: what is told to be longer is two of them, or one and a half with a leg in each
 /// one's middle. Where most are full few posts are seen from one to the next: the one stands out by the other factor.
 pub const LONGEST: f64 = 3.9;
@@ -66,19 +60,16 @@ impl Counts {
         (FIRST..=LAST).map(|lag| [1, 2].map(|times| self.excess(times, lag))).collect()
     }
 
-    /// The pitch, metres, of those of the lags that are looked at that may be one: as it stands out, and of the shelves that are
-    /// parts of it, if they are.
-    pub fn pitch(&self, may_be: &[bool]) -> Option<[f64; 2]> {
+    /// The pitch, metres, of those of the lags that are looked at that may be one.
+    pub fn pitch(&self, may_be: &[bool]) -> Option<f64> {
         let all = self.all();
         let clear = |n: usize| clear(all[n]);
         let found: Vec<f64> = (0..all.len()).map(|n| if may_be[n] { clear(n) } else { 0.0 }).collect();
         let top = |n: usize| found[n.saturating_sub(TOP)..].iter().take(2 * TOP + 1).all(|other| *other <= found[n]);
         let tops = (0..found.len()).filter(|&n| found[n] >= CONTRAST && top(n));
-        let tops = tops.map(|n| (FIRST + n, all[n][0].0));
-        let (shelves, tops): (Vec<_>, Vec<_>) = tops.partition(|top| (top.0 as f64) * STEP < LAGS.0);
+        let tops: Vec<(usize, f64)> = tops.map(|n| (FIRST + n, all[n][0].0)).collect();
         let lag = one_bay(shortest(&tops)?, |lag| clear(lag - FIRST));
-        let shelf = of_shelves(&shelves, lag, |lag| self.excess(1, lag).0);
-        Some([lag, shelf].map(|lag| between_steps(&self.pairs, lag) * STEP))
+        Some(between_steps(&self.pairs, lag) * STEP)
     }
 }
 
@@ -157,21 +148,6 @@ fn one_bay(lag: usize, clear: impl Fn(usize) -> f64) -> usize {
     BAYS.into_iter().filter_map(clearest).find(|&bay| clear(bay) >= PARTIAL).unwrap_or(lag)
 }
 
-/// The lag of one shelf where these are shorter than any way is wide, and that of two or three stands out of what is as long as
-/// bays: it recurs, and its other multiples up to the next one do so as often, where of pallets that stand in a longer bay the
-/// odd ones do not; by how many pairs each lag stands out.
-fn of_shelves(shelves: &[(usize, f64)], lag: usize, pairs: impl Fn(usize) -> f64) -> usize {
-    let is_shelf = |&&(shelf, own): &&(usize, f64)| {
-        let times = (lag as f64 / shelf as f64).round() as usize;
-        let others = || (2..=times + 1).filter(|n| *n != times).map(|n| n * lag / times);
-        (2..=3).contains(&times)
-            && (times * shelf).abs_diff(lag) <= TOP
-            && own >= SHELF * pairs(lag)
-            && others().all(|other| pairs(other) >= SHELVES * pairs(lag))
-    };
-    shelves.iter().find(is_shelf).map_or(lag, |shelf| shelf.0)
-}
-
 /// A length in whole parts of a step, metres.
 pub fn in_parts(length: f64) -> f64 {
     (length / STEP * PARTS).round() / PARTS * STEP
@@ -231,17 +207,6 @@ mod tests {
             assert!((pitch(tops) - bay).abs() < 1e-9, "{tops:?}");
         }
         assert_eq!(shortest(&[]), None);
-    }
-
-    #[test]
-    fn shelves_are_told_by_their_other_multiples() {
-        // How often posts recur at so many steps: at all multiples of 25, or at odd ones seldom.
-        let pairs = |odd: f64| move |lag: usize| if lag / 25 % 2 == 1 { odd } else { 100.0 };
-        assert_eq!(of_shelves(&[(25, 80.0)], 50, pairs(90.0)), 25);
-        assert_eq!(of_shelves(&[(25, 80.0)], 75, pairs(90.0)), 25);
-        assert_eq!(of_shelves(&[(25, 80.0)], 50, pairs(40.0)), 50);
-        assert_eq!(of_shelves(&[(25, 50.0)], 50, pairs(90.0)), 50);
-        assert_eq!(of_shelves(&[(30, 90.0)], 50, pairs(90.0)), 50);
     }
 
     #[test]

@@ -31,10 +31,8 @@ const HALVES: f64 = 2.0;
 
 /// From post to post along the rows of a direction.
 pub struct Pitch {
-    /// Of all together, metres: of the shelves, where they are parts of what stands out.
+    /// Of all together, metres.
     pub common: f64,
-    /// As it stands out, which may be several shelves, or a bay in which several pallets recur.
-    pub whole: f64,
     /// Where the view, and with it the first part, begins, metres.
     start: [f64; 2],
     parts: Parts,
@@ -50,7 +48,7 @@ impl Pitch {
             wider(ends, ABOUT).map(|place| ((place - self.start[axis]) / STEP).floor() as i32)
         };
         let counts = self.parts.within(steps(row.along, 0), steps(row.across, 1));
-        let own = counts.pitch(&self.along).map(|[_, shelf]| shelf);
+        let own = counts.pitch(&self.along);
         let lag = (self.common / STEP).round() as usize;
         if !(FIRST..=LAST).contains(&lag) || counts.excess(1, lag).1 >= RECURS {
             // What is common may be two bays where posts of another hall say so.
@@ -95,8 +93,8 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<Pitch> {
     let is_along =
         |n: usize| (0..2).all(|twice| faces.excess(twice + 1, FIRST + n).0 >= ALONG[twice] * all[n][twice].0);
     let along: Vec<bool> = (0..all.len()).map(is_along).collect();
-    let [whole, common] = counts.pitch(&along)?;
-    Some(Pitch { common, whole, start: view.start, parts, along })
+    let common = counts.pitch(&along)?;
+    Some(Pitch { common, start: view.start, parts, along })
 }
 
 /// How many pairs of specks on a line, of those so far apart, are as many steps apart with a row beside them.

@@ -47,8 +47,6 @@ pub struct Turned {
     pub(super) samples: u32,
     /// Distance from post to post along its lines, metres, where posts recur.
     pub pitch: Option<f64>,
-    /// The same as it stands out, which may be several shelves.
-    pub whole_pitch: Option<f64>,
     /// The same by frames that stand alone, which counts where too few posts recur.
     framed: Option<f64>,
     /// That of its racks on legs.
@@ -125,7 +123,6 @@ impl Turned {
             known: Known::default(),
             samples,
             pitch: None,
-            whole_pitch: None,
             framed: None,
             on_legs: Arc::default(),
             by_rows: None,
@@ -183,7 +180,6 @@ impl Turned {
     pub fn recur(&mut self, evidence: &Evidence) {
         let found = pitch::find(evidence, self);
         self.pitch = found.as_ref().map(|found| found.common).or(self.framed);
-        self.whole_pitch = found.as_ref().map(|found| found.whole).or(self.framed);
         self.by_rows = found.map(Arc::new);
         if evidence.recall.keeps() {
             self.keys = self.find_keys();

@@ -298,22 +298,22 @@ fn cross(
         true => Passes::Before,
         false => Passes::Within,
     };
-    let outer = [between[0].across[0], between[1].across[1]].map(along);
-    // What is long enough for a way by itself on one side of the row and finds the row open as wide as it is goes on there.
+    let along_of = |places: [f64; 2]| sorted(places.map(along));
+    let outer = along_of([between[0].across[0], between[1].across[1]]);
+    // What is long enough for a way by itself before the row, or behind it, and finds it open as wide as it is goes on there.
     let goes_on = || {
-        let [from, to] = sorted(outer);
-        let is_long = [[strip.along[0], from], [to, strip.along[1]]].into_iter().any(|[from, to]| {
-            !corridors::is_short(to - from, strip.width())
-                && sided::is_sided(other, &Strip { along: [from, to], ..strip.clone() })
-        });
+        let is_long = |along: [f64; 2]| {
+            !corridors::is_short(along[1] - along[0], strip.width())
+                && sided::is_sided(other, &Strip { along, ..strip.clone() })
+        };
         let is_as_wide = |gap: [f64; 2]| [0, 1].into_iter().all(|side| (gap[side] - sides[side]).abs() <= AS_WIDE);
-        is_long && columns.gap_about(u).is_some_and(is_as_wide)
+        (is_long([strip.along[0], outer[0]]) || is_long([outer[1], strip.along[1]]))
+            && columns.gap_about(u).is_some_and(is_as_wide)
     };
     let way =
         if at_end { columns.may_end_at(sides) } else { ways.iter().any(|way| way[0] < u && u < way[1]) || goes_on() };
     let free = columns.is_free(sides).then(|| columns.free_elsewhere(sides));
     let across = |u: f64| other.place(view.to_map([u, middle]))[1];
-    let along_of = |places: [f64; 2]| sorted(places.map(along));
     let is_narrower = |ends: &[f64; 2]| ends[1] - ends[0] <= sides[1] - sides[0] - NARROWED;
     let bar = || {
         let closed = columns.closed_elsewhere(sides);
@@ -328,7 +328,7 @@ fn cross(
     };
     Some(Crossed {
         along: along_of(between.map(Strip::middle)),
-        outer: along_of([between[0].across[0], between[1].across[1]]),
+        outer,
         way,
         open: way || leads_through,
         passes,
