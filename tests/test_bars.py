@@ -149,3 +149,24 @@ def test_ways_narrower_than_bays_are_ways_through_single_racks_too_where_as_many
     survey = groundplan.survey(drawn(52.5, 32.3, boxes), resolution=0.05)
     across = sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C"))
     assert across == pytest.approx([2.3] * 6 + [4.1] * 2, abs=0.2)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_way_one_bay_wide_between_bars_through_the_only_double_row_is_no_empty_bay(seed: int) -> None:
+    draws = np.random.default_rng(seed)
+
+    def boxes() -> Iterator[Box]:
+        for y in (3.3, 4.5):
+            for x, bays in ((3.5, 4), (3.5 + 5 * 2.6, 5)):
+                for n in range(bays + 1):
+                    for low in (y, y + 0.9):
+                        yield x + 2.6 * n - 0.05, low, x + 2.6 * n + 0.05, low + 0.1
+                for n in (0, bays):
+                    yield x + 2.6 * n - 0.05, y, x + 2.6 * n + 0.05, y + 1.0
+                for n in np.flatnonzero(draws.random(bays) < 0.7):
+                    for left in (x + 2.6 * n + 0.15, x + 2.6 * n + 1.35):
+                        yield left, y + 0.1, left + 1.1, y + 0.9
+
+    survey = groundplan.survey(drawn(33.0, 8.8, boxes()), resolution=0.05)
+    across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
+    assert len(across) == 3

@@ -31,6 +31,8 @@ const STEPS: f64 = 0.01;
 const SEVERAL: usize = 3;
 /// Between plates a single rack shows so many frames, with these.
 const CLOSED: usize = 5;
+/// With so many frames that are no plates those tell that plates are ends.
+const OTHERS: usize = 2;
 /// No table is longer, nor desks side by side, metres; a desk is no wider, and what is, in two rows, no longer.
 const TABLE: f64 = 14.0;
 const DESK: (f64, f64) = (2.2, 8.0);
@@ -240,10 +242,26 @@ fn bays_between(one: &Frame, other: &Frame, pitch: f64) -> Option<usize> {
     (bays >= 1.0 && (gap - bays * pitch).abs() <= NEAR).then_some(bays as usize)
 }
 
+/// True when plates end racks of a row: no more of its frames are some, or of those that goods leave to be seen each is the row's
+/// first or last, or faces just one.
+fn are_ends(row: &[Frame], pitch: f64) -> bool {
+    let plates = row.iter().filter(|frame| frame.is_plate).count();
+    let face = |n: usize| {
+        let [one, other] = [&row[n], &row[n + 1]];
+        one.is_plate && other.is_plate && bays_between(one, other, pitch) == Some(1)
+    };
+    let last = row.len() - 1;
+    let is_end = |n: usize| {
+        let faced = usize::from(n > 0 && face(n - 1)) + usize::from(n < last && face(n));
+        faced == 1 || faced == 0 && (n == 0 || n == last)
+    };
+    2 * plates <= row.len() || row.len() >= plates + OTHERS && (0..row.len()).filter(|&n| row[n].is_plate).all(is_end)
+}
+
 /// A row of frames, parted where one does not follow another at a pitch.
 fn pieces<'a>(row: &'a [Frame], pitch: f64, legs: &Legs, map: &Map) -> Vec<&'a [Frame]> {
     // Of racks that plates close two face each other across a way, be it as wide as a bay.
-    let are_ends = 2 * row.iter().filter(|frame| frame.is_plate).count() <= row.len();
+    let are_ends = are_ends(row, pitch);
     let is_next = |a: &Frame, b: &Frame| {
         if are_ends && a.is_plate && b.is_plate {
             return false;

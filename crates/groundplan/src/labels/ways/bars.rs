@@ -18,6 +18,8 @@ use std::iter::{self, Sum};
 const NEAR: f64 = 0.3;
 /// What lies between bars is no narrower than so many bays: posts or goods narrow an empty one.
 const AS_WIDE: f64 = 0.95;
+/// A post, with what an edge is off on either side, takes so much of a bay, metres.
+const POST: f64 = 0.25;
 /// Posts and goods narrow no empty bay by so much, metres; half of one, with what goods leave beside it, is no wider than this share.
 const NARROWER: f64 = 0.4;
 const MORE_THAN_HALF: f64 = 0.62;
@@ -124,10 +126,17 @@ impl<'a> Bars<'a> {
     }
 
     /// True when what one of the strips passes through of the rows, between their ends, lies between bars and is no narrower than a
-    /// bay, if bays are known.
+    /// bay, if bays are known. Through racks back to back it may be narrower by a post if bars stand at all its sides: goods seldom
+    /// line up so there.
     pub fn are_beside(&self, n: usize) -> bool {
-        let bay = self.place.pitch_of(&self.place.passing[n]);
-        bay.is_none_or(|bay| self.strips[n].width() >= AS_WIDE * bay) && self.tell(n)
+        let (own, width) = (&self.place.passing[n], self.strips[n].width());
+        let bay = self.place.pitch_of(own);
+        let leaves_no_bay = |least: &dyn Fn(f64) -> f64| bay.is_none_or(|bay| width >= least(bay));
+        leaves_no_bay(&|bay| AS_WIDE * bay) && self.tell(n)
+            || leaves_no_bay(&|bay| bay - POST)
+                && own.next.is_empty()
+                && self.place.are_double(own)
+                && self.are_all_beside(n)
     }
 
     /// True when bars stand beside what one of the strips passes through of the rows as at their ends, and not as beside bays.
@@ -159,6 +168,12 @@ impl<'a> Bars<'a> {
         let is_of_two_racks = |m: &&usize| self.place.are_double(&self.place.passing[**m]);
         let double = iter::once(&n).chain(&others).filter(is_of_two_racks).count();
         others.len() >= OTHERS && DOUBLE * double > others.len() && Told { sides, ..told }.is_way()
+    }
+
+    /// True when bars stand at all sides of what one of the strips passes through, and end most rows.
+    pub fn are_all_beside(&self, n: usize) -> bool {
+        self.told(n, &self.place.passing[n].rows)
+            .is_some_and(|Told { sides, ends, .. }| sides.open == 0 && ends.closed > ends.open)
     }
 
     /// True when bars stand on both sides of one of the strips and end most rows, and beside no bay.
