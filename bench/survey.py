@@ -49,6 +49,7 @@ def stages(map: Map, threads: int) -> Stages:
         "directions": lambda: gp.find_directions(map, gradients, threads=threads),
         "radiograms": lambda: gp.find_radiograms(map, directions, gradients, threads=threads),
         "lines": lambda: gp.find_lines(survey.radiograms),
+        "rack faces": lambda: gp.add_rack_faces(map, directions, lines, gradients, threads=threads),
         "subdivision": lambda: gp.subdivide(map, directions, lines, threads=threads),
         "occupancy": lambda: gp.find_occupancy(map, directions, lines, gradients, threads=threads),
         "walls": lambda: gp.find_walls(cut, occupancy),

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from _legs import with_a_way
 from _program import call, files, hall, write_pgm
 from zoo import FREE, OCCUPIED, RESOLUTION, UNKNOWN, ZOO
 
@@ -86,9 +87,9 @@ def same(path: Path, client: Any, reading: dict[str, Any] | None = None, **given
     return found
 
 
-@pytest.mark.parametrize("name", ["site", *ZOO])
+@pytest.mark.parametrize("name", ["site", "legs", *ZOO])
 def test_a_map_in_memory_is_surveyed_to_the_bytes_of_one_thread(name: str, client: Any) -> None:
-    map = groundplan.from_array(site() if name == "site" else ZOO[name](), **FRAME)
+    map = groundplan.from_array({"site": site, "legs": with_a_way, **ZOO}[name](), **FRAME)
     assert groundplan.survey(map, client=client).to_json() == groundplan.survey(map, threads=1).to_json()
 
 

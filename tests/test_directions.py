@@ -177,6 +177,24 @@ def test_a_wing_that_is_small_beside_the_hall_has_its_two_directions(turn: float
     assert len(angles_of(site(12))) == 2
 
 
+@pytest.mark.parametrize("degrees", [0.0, 23.0])
+def test_beveled_corners_of_blocks_are_no_wing(degrees: float) -> None:
+    """A hall of 24 m by 16 m with three blocks of 5 m by 11 m, of each corner of which 1.2 m are cut off."""
+    y, x = np.mgrid[-15.0:15.0:0.05, -15.0:15.0:0.05]
+    cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    u, v = np.abs(x * cos + y * sin), np.abs(y * cos - x * sin)
+    picture = np.full(x.shape, 205, dtype=np.uint8)
+    picture[(u < 12.2) & (v < 8.2)] = 0
+    picture[(u < 12.0) & (v < 8.0)] = 254
+    for middle in (0.0, 7.6):
+        across = np.abs(u - middle)
+        for deep, value in ((0.0, 0), (0.1, 205)):
+            corner = across + v < 2.5 + 5.5 - 1.2 - deep * 1.4
+            picture[(across < 2.5 - deep) & (v < 5.5 - deep) & corner] = value
+    found = angles_of(np.ascontiguousarray(picture[::-1]))
+    assert len(found) == 2
+
+
 @pytest.mark.parametrize("turn", [5.5, -6.0, 7.0])
 def test_a_wing_turned_by_a_few_degrees_has_directions_of_its_own(turn: float) -> None:
     found = groundplan.survey(simulate.warehouse(wing=turn, seed=3).map).directions.angles

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 import zoo
+from _legs import Box, hall, legs
 from zoo import OPEN, PADDED, RESOLUTION, TURNS, ZOO, Canvas
 
 import groundplan
@@ -122,3 +124,53 @@ def test_the_response_of_a_radiogram_has_a_row_for_each_width() -> None:
     assert response.rows.shape == (len(response.widths), len(radiogram.values))
     assert response.widths[[0, -1]] / RESOLUTION == pytest.approx([1.0, 20.0])
     assert (np.diff(response.widths) > 0).all()
+
+
+def racks_on_legs(degrees: float = 0.0) -> zoo.Picture:
+    """Four racks of eight bays, of which a lidar sees no more than the legs, in a hall of 29.6 by 19.4 m."""
+    return hall(29.6, 19.4, (box for n in range(4) for box in legs(4.0, 3.0 + 4.1 * n, 8, 1.1, 2.7)), degrees)
+
+
+#: From face to face of those racks, and to the hall's walls, metres from its middle.
+FACES = [-9.7, *(low + at - 9.7 for at in (3.0, 7.1, 11.2, 15.3) for low in (0.0, 1.1)), 9.7]
+
+
+def along_faces(survey: groundplan.Survey, degrees: float) -> list[float]:
+    """Offsets from the hall's middle of the lines along the racks, metres."""
+    normal = np.array([-np.sin(np.radians(degrees)), np.cos(np.radians(degrees))])
+    middle = normal @ [survey.map.width * RESOLUTION / 2, survey.map.height * RESOLUTION / 2]
+    return sorted(float(offset) for offset in offsets_along(survey, degrees) * RESOLUTION - middle)
+
+
+@pytest.mark.parametrize("degrees", [0.0, 17.0])
+def test_the_faces_of_racks_on_legs_are_lines(degrees: float) -> None:
+    survey = groundplan.survey(racks_on_legs(degrees), resolution=RESOLUTION)
+    assert along_faces(survey, degrees) == pytest.approx(FACES, abs=0.1)
+    assert all(survey.lines.amplitudes > 0.5)
+    assert not survey.problems()
+
+
+def test_a_rack_whose_faces_are_lines_has_no_others() -> None:
+    def boxes() -> Iterator[Box]:
+        for n in range(4):
+            yield from legs(4.0, 3.0 + 4.1 * n, 8, 1.1, 2.7)
+            yield 4.3, 3.0 + 4.1 * n, 22.0, 4.1 + 4.1 * n
+
+    map = groundplan.from_array(hall(29.6, 19.4, boxes()), RESOLUTION)
+    directions = groundplan.find_directions(map)
+    lines = groundplan.find_lines(groundplan.find_radiograms(map, directions))
+    assert groundplan.add_rack_faces(map, directions, lines) == lines
+
+
+def test_of_racks_on_legs_as_much_has_to_be_seen_as_is_asked_of_lines() -> None:
+    map = groundplan.from_array(racks_on_legs(), RESOLUTION)
+    least = {"lines_min_amplitude": 3.0}
+    seen = [len(along_faces(groundplan.survey(map, **asked), 0.0)) for asked in ({}, least)]
+    assert seen == [10, 2]
+
+
+def test_lines_that_are_given_and_those_of_the_papers_labels_stay_as_they_are() -> None:
+    map = groundplan.from_array(racks_on_legs(), RESOLUTION)
+    given = groundplan.find_lines(groundplan.find_radiograms(map, groundplan.find_directions(map)))
+    assert groundplan.survey(map, lines=given).lines == given
+    assert groundplan.survey(map, labels_method="paper").lines == given

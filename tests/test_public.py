@@ -15,6 +15,7 @@ EXPECTED = {
     *("read", "from_array", "Map", "MapWarning"),
     *("survey", "Survey", "parameters"),
     *("find_gradients", "find_directions", "find_radiograms", "find_response", "find_lines"),
+    "add_rack_faces",
     *("subdivide", "find_occupancy", "find_walls", "find_adjacency", "find_labels"),
     *(
         "Gradients",

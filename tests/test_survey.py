@@ -31,7 +31,7 @@ def test_the_stages_one_by_one_give_the_survey(name: str) -> None:
     gradients = groundplan.find_gradients(map)
     directions = groundplan.find_directions(map, gradients)
     radiograms = groundplan.find_radiograms(map, directions, gradients)
-    lines = groundplan.find_lines(radiograms)
+    lines = groundplan.add_rack_faces(map, directions, groundplan.find_lines(radiograms), gradients)
     cut = groundplan.subdivide(map, directions, lines)
     occupancy = groundplan.find_occupancy(map, directions, lines, gradients)
     walls = groundplan.find_walls(cut, occupancy)

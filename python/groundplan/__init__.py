@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from groundplan.maps import Map, MapWarning, from_array, read
     from groundplan.parameters import table as parameters
     from groundplan.stages import (
+        add_rack_faces,
         find_adjacency,
         find_directions,
         find_gradients,
@@ -70,6 +71,7 @@ __all__ = [
     "Subdivision",
     "Survey",
     "Walls",
+    "add_rack_faces",
     "find_adjacency",
     "find_directions",
     "find_gradients",

@@ -168,6 +168,7 @@ def survey_site(
     if lines is None:
         radiograms = run(_core.find_radiograms, grid, gradients, directions, values, cores(threads))
         lines = run(_core.find_lines, radiograms, values)
+        lines = run(_core.add_rack_faces, grid, gradients, directions, lines, values, cores(threads))
     # Those of no rows at all: a row of noughts for each face, and lines that do not fit are refused here.
     sums = run(_core.sum_faces, grid, (map.height, 0), (0, 0), directions, lines, 1)
     if far is not None:

@@ -168,11 +168,11 @@ class Lines(Stage):
     offsets : (L,) float64
         Metres.
     amplitudes : (L,) float64
-        Metres of structure lying on it.
+        Metres of structure lying on it; along the face of a rack on legs, of the legs.
     widths : (L,) float64
-        Width (sigma) of its peak, metres.
+        Width (sigma) of its peak, metres; along the face of a rack on legs, a pixel's.
     min_amplitude : float
-        Least amplitude let through: what the resolution knob came to.
+        Least amplitude of a peak let through: what the resolution knob came to.
     """
 
     directions: Ids

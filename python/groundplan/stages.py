@@ -1,7 +1,7 @@
 """The method's stages, each a pure function, and what each makes.
 
-    find_gradients -> find_directions -> find_radiograms -> find_lines -> subdivide -> find_occupancy
-        -> find_walls -> find_adjacency -> find_labels
+    find_gradients -> find_directions -> find_radiograms -> find_lines -> add_rack_faces -> subdivide
+        -> find_occupancy -> find_walls -> find_adjacency -> find_labels
 
 ``groundplan.survey()`` is these in a row. A researcher replaces one of them and hands its
 result to ``groundplan.survey(map, directions=..., lines=...)``; what comes after the subdivision is exchanged in the
@@ -247,6 +247,47 @@ def find_lines(radiograms: list[Radiogram], **parameters: Any) -> Lines:
         raise ParameterError("stage.input", f"radiograms has to be a list and is {a(type(radiograms).__name__)}")
     given = [taken(Radiogram, f"radiograms[{k}]", radiogram) for k, radiogram in enumerate(radiograms)]
     return made(Lines, run(_core.find_lines, given, named(parameters)))
+
+
+def add_rack_faces(
+    map: Map,
+    directions: Directions,
+    lines: Lines,
+    gradients: Gradients | None = None,
+    *,
+    threads: int | None = None,
+    **parameters: Any,
+) -> Lines:
+    """II-B: the lines, and those along the faces of racks on legs, of which a radiogram has no peak.
+
+    A lidar that looks under the lowest beams sees no more of a rack than its legs. A line is added where those stand
+    as racks' do and none that is given follows them; with ``lines_min_amplitude`` or ``lines_detail`` where as much
+    structure is seen as of the others, and none with ``labels_method="paper"``.
+
+    Parameters
+    ----------
+    map, directions, gradients
+        As `find_radiograms` takes them.
+    lines
+        Those found, or `Lines.of` offsets in metres.
+    threads
+        At most so many; all cores by default. Any number gives the same lines.
+
+    Returns
+    -------
+    Lines
+        Those given and those added, ascending within a direction; the amplitude of one that is added is what is seen of
+        the legs along it, metres.
+
+    Raises
+    ------
+    ParameterError
+        A parameter that is not known or out of its range; ``stage.input`` for stages that do not fit one another.
+    """
+    grid = layout(needs(Map, "map", map))
+    cut = taken(Directions, "directions", directions), taken(Lines, "lines", lines)
+    edges = _gradients(map, gradients, parameters, threads)
+    return made(Lines, run(_core.add_rack_faces, grid, edges, *cut, named(parameters), cores(threads)))
 
 
 def subdivide(map: Map, directions: Directions, lines: Lines, *, threads: int | None = None) -> Subdivision:

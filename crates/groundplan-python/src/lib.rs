@@ -179,6 +179,25 @@ mod _core {
         convert::from_lines(py, lines::find_lines(&radiograms, &parameters::read(parameters)?, 1))
     }
 
+    /// The lines, and those along the faces of racks on legs.
+    #[pyfunction]
+    fn add_rack_faces<'py>(
+        py: Python<'py>,
+        layout: Layout<'py>,
+        gradients: &Bound<'py, PyDict>,
+        directions: &Bound<'py, PyDict>,
+        lines: &Bound<'py, PyDict>,
+        parameters: &Bound<'py, PyDict>,
+        threads: usize,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let gradients = convert::gradients_on(gradients, &layout.frame())?;
+        let (directions, lines) = convert::lines_of(directions, lines)?;
+        let parameters = parameters::read(parameters)?;
+        let made = layout
+            .with_grid(py, |grid| labels::add_rack_faces(grid, &gradients, &directions, lines, &parameters, threads))?;
+        convert::from_lines(py, made)
+    }
+
     /// II-C: vertices, edges, faces.
     #[pyfunction]
     fn subdivide<'py>(

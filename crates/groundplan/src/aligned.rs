@@ -17,6 +17,8 @@ const BACKGROUND_PIXELS: usize = 20;
 pub struct Aligned {
     /// Metres that stand out of the background as lines.
     pub metres: f64,
+    /// And of one of them at most.
+    pub longest: f64,
     /// How it was projected, and for each bin whether a line lies there.
     across: Across,
     on_line: Vec<bool>,
@@ -40,7 +42,7 @@ pub fn aligned(frame: &Frame, rest: &Oriented, angle: f64, threads: usize) -> Al
     let sums: Vec<u64> = std::iter::once(0).chain(values.iter().map(add)).collect();
     let over = |from: usize, to: usize| (sums[to.min(values.len())] - sums[from]) as f64 * unit;
     let mut on_line = vec![false; values.len()];
-    let mut metres = 0.0;
+    let (mut metres, mut longest) = (0.0, 0.0_f64);
     let mut n = 1;
     while n + 1 < values.len() {
         let peak = over(n - 1, n + 2);
@@ -52,12 +54,14 @@ pub fn aligned(frame: &Frame, rest: &Oriented, angle: f64, threads: usize) -> Al
         let (from, to) = ((n - 1).saturating_sub(BACKGROUND_PIXELS), (n + BACKGROUND_PIXELS).min(values.len()));
         let around = (over(from, to) - peak) / (to - from) as f64 * 3.0;
         if peak > 2.0 * around {
-            metres += (peak - around) * frame.resolution;
+            let own = (peak - around) * frame.resolution;
+            metres += own;
+            longest = longest.max(own);
             on_line[n.saturating_sub(3)..(n + 2).min(values.len())].fill(true);
             n += 1;
         }
     }
-    Aligned { metres, across, on_line }
+    Aligned { metres, longest, across, on_line }
 }
 
 /// Takes out the pixels that lie on its lines.

@@ -17,6 +17,8 @@ pub const SQUARE: (f64, f64) = (0.3, 0.015);
 /// Two weak ones that are square to one another, to so many degrees, are a wing's when each has this share: what is no
 /// wall lines up along one angle, if at all.
 pub const WING: (f64, f64) = (1.0, 0.03);
+/// And a wall of so many metres: what is beveled has shorter ones along two such angles.
+const WALL: f64 = 3.5;
 
 /// Drift bends halls, so that the two directions of one are square to so many degrees only: then a weak one needs this share of
 /// the other.
@@ -30,6 +32,8 @@ pub struct Candidate {
     pub mean: Option<f64>,
     /// Metres of structure that line up along it.
     pub metres: f64,
+    /// And along one line of it at most.
+    pub longest: f64,
     /// At which of the controls clearly less lines up: scattered pixels line up there as well as they do here.
     pub quiet: [bool; CONTROLS_DEG.len()],
 }
@@ -72,7 +76,7 @@ pub fn wings(weak: &[Candidate], strong: &[Candidate], strongest: f64, parameter
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
     let may_be = |f: &&Candidate| {
         let is_known = strong.iter().any(|to| is_of(to, f.angle, tolerance));
-        f.metres >= WING.1 * strongest && f.exceeds_chance_beside(strong) && !is_known
+        f.metres >= WING.1 * strongest && f.longest >= WALL && f.exceeds_chance_beside(strong) && !is_known
     };
     let own: Vec<Candidate> = weak.iter().filter(may_be).copied().collect();
     own.iter().filter(|f| own.iter().any(|other| is_square(other.angle, f, WING.0))).copied().collect()
@@ -99,7 +103,13 @@ mod tests {
     use super::*;
 
     fn candidate(degrees: f64, metres: f64) -> Candidate {
-        Candidate { angle: degrees.to_radians(), mean: None, metres, quiet: [true; CONTROLS_DEG.len()] }
+        Candidate {
+            angle: degrees.to_radians(),
+            mean: None,
+            metres,
+            longest: metres,
+            quiet: [true; CONTROLS_DEG.len()],
+        }
     }
 
     #[test]
@@ -117,5 +127,15 @@ mod tests {
         let count = |degrees: f64, metres: f64| seconds(&[candidate(degrees, metres)], &strong).len();
         assert_eq!([count(20.0, 5.0), count(20.3, 5.0), count(22.2, 71.0)], [1, 0, 0]);
         assert_eq!([count(20.3, 71.0), count(21.5, 71.0)], [1; 2]);
+    }
+
+    #[test]
+    fn two_weak_directions_without_a_wall_are_no_wing() {
+        let strong = [candidate(0.0, 370.0), candidate(90.0, 220.0)];
+        let count = |longest: f64| {
+            let weak = [-45.0, 45.0].map(|degrees| Candidate { longest, ..candidate(degrees, 21.0) });
+            wings(&weak, &strong, 370.0, &Parameters::default()).len()
+        };
+        assert_eq!([count(2.9), count(8.0)], [0, 2]);
     }
 }

@@ -1,6 +1,6 @@
 //! II-A: the histogram of oriented gradients finds the directions, the sharpness of their radiograms measures them.
 
-use crate::aligned::{ALIGNED_DEG, aligned, take};
+use crate::aligned::{ALIGNED_DEG, Aligned, aligned, take};
 use crate::bent;
 use crate::candidate::{CONTROLS_DEG, Candidate, NONE_QUIET, SQUARE, WING, alone, is_square, seconds, wings};
 use crate::gradients::Gradients;
@@ -102,7 +102,8 @@ fn measure(
         if found.iter().all(|other| angle_between(other.angle, angle) > SAME_DIRECTION) {
             let lines = aligned(frame, rest, angle, threads);
             take(rest, angle, &lines, parameters);
-            found.push(Candidate { angle, mean: None, metres: lines.metres, quiet: NONE_QUIET });
+            let Aligned { metres, longest, .. } = lines;
+            found.push(Candidate { angle, mean: None, metres, longest, quiet: NONE_QUIET });
         }
     }
     found
@@ -151,7 +152,7 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
         let angle = undirected(settled(diagonal, angle));
         if far(angle, separation) {
             let lines = aligned(frame, rest, angle, threads);
-            let metres = lines.metres;
+            let Aligned { metres, longest, .. } = lines;
             if found.iter().any(|other| !is_far(other, angle, separation) && other.metres >= metres) {
                 continue;
             }
@@ -163,7 +164,7 @@ fn search(frame: &Frame, rest: &mut Oriented, parameters: &Parameters, threads: 
             strongest = strongest.max(metres);
             take(rest, angle, &lines, parameters);
             found.retain(|other| is_far(other, angle, separation));
-            found.push(Candidate { angle, mean, metres, quiet });
+            found.push(Candidate { angle, mean, metres, longest, quiet });
             candidates = self::candidates(rest.histogram());
         }
     }

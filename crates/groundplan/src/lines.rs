@@ -17,7 +17,7 @@ pub struct Lines {
     pub amplitudes: Vec<f64>,
     /// How well it lines up: the width (sigma) of the peak, metres.
     pub widths: Vec<f64>,
-    /// Least amplitude that was let through, metres: what the resolution knob came to.
+    /// Least amplitude of a peak that was let through, metres: what the resolution knob came to.
     pub min_amplitude: f64,
 }
 

@@ -8,8 +8,8 @@ use crate::directions::{Directions, find_directions};
 use crate::gradients::{Gradients, find_gradients};
 use crate::grid::{Frame, Grid, angle_between};
 use crate::labels::{
-    Division, Evidence, Glance, Ground, Label, Memory, Pattern, Recall, Scene, Sight, Sketch, find_confidence,
-    find_labels, find_labels_in, find_patterns, find_uprights,
+    Division, Evidence, Glance, Ground, Label, Memory, Pattern, Recall, Scene, Sight, Sketch, add_rack_faces,
+    find_confidence, find_labels, find_labels_in, find_patterns, find_racks_on_legs, find_uprights, with_faces,
 };
 use crate::lines::{Lines, find_lines};
 use crate::occupancy::Occupancy;
@@ -91,10 +91,6 @@ impl Given {
     ) -> Directions {
         self.directions.take().unwrap_or_else(|| find_directions(frame, gradients, parameters, threads))
     }
-
-    fn lines(&mut self, radiograms: &[Radiogram], parameters: &Parameters, threads: usize) -> Lines {
-        self.lines.take().unwrap_or_else(|| find_lines(radiograms, parameters, threads))
-    }
 }
 
 /// Surveys a grid. Total: any grid and parameters give a valid subdivision, at worst one face, and warnings.
@@ -116,12 +112,17 @@ pub fn survey(grid: &Grid, parameters: &Parameters, mut given: Given, threads: u
             (given.directions(frame, &gradients, parameters, threads), uprights.map(Later::get))
         });
         let scene = Scene { grid, directions: &directions, threads, recall: &recall };
+        let on_legs = uprights.as_ref().map(|uprights| find_racks_on_legs(&scene, uprights)).unwrap_or_default();
         let (radiograms, lines, divided, walls, labels, confidence) = side_by_side(threads, |side| {
             let seen = ground.zip(uprights).map(|(Ground { look, space }, uprights)| {
-                (space, side.start(move || Glance::new(&scene, look.get(), &uprights)))
+                let on_legs = &on_legs;
+                (space, side.start(move || Glance::new(&scene, look.get(), &uprights, on_legs)))
             });
             let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
-            let lines = given.lines(&radiograms, parameters, threads);
+            let lines = given.lines.take().unwrap_or_else(|| {
+                let lines = find_lines(&radiograms, parameters, threads);
+                with_faces(lines, &on_legs, frame, parameters)
+            });
             let (gradients, directions) = (&gradients, &directions);
             let evidence =
                 Evidence { grid, gradients, directions, lines: &lines, parameters, threads, recall: &recall };
@@ -182,7 +183,10 @@ impl Structure {
         let gradients = given.gradients(grid, parameters, threads);
         let directions = given.directions(frame, &gradients, parameters, threads);
         let radiograms = find_radiograms(frame, &gradients, &directions, parameters, threads);
-        let lines = given.lines(&radiograms, parameters, threads);
+        let lines = given.lines.take().unwrap_or_else(|| {
+            let lines = find_lines(&radiograms, parameters, threads);
+            add_rack_faces(grid, &gradients, &directions, lines, parameters, threads)
+        });
         Self { gradients, directions, radiograms, lines }
     }
 

@@ -34,6 +34,8 @@ use crate::occupancy::Occupancy;
 use crate::parameters::{Method, Parameters};
 use crate::subdivision::Subdivision;
 use crate::tiles::Tiles;
+pub(crate) use posts::faces::with_faces;
+pub(crate) use posts::legs::find as find_racks_on_legs;
 pub(crate) use posts::uprights::find as find_uprights;
 use rooms::Space;
 pub(crate) use sketch::{Glance, Lined, Sight, Sketch};
@@ -269,6 +271,25 @@ pub(crate) fn find_labels_in<'d>(
     (labels, confidence)
 }
 
+/// The lines, and those along the faces of racks on legs that none of them follows, of which a radiogram has no peak: what a survey
+/// has. The labels by [`Method::Paper`] know of no racks, and leave the lines as they are.
+#[must_use]
+pub fn add_rack_faces(
+    grid: &Grid,
+    gradients: &Gradients,
+    directions: &Directions,
+    lines: Lines,
+    parameters: &Parameters,
+    threads: usize,
+) -> Lines {
+    if parameters.labels_method == Method::Paper {
+        return lines;
+    }
+    let scene = Scene { grid, directions, threads, recall: &Recall::default() };
+    let racks = find_racks_on_legs(&scene, &find_uprights(&grid.frame, &gradients.pixels));
+    with_faces(lines, &racks, &grid.frame, parameters)
+}
+
 /// Finds the labels by the method that the parameters name; corridors first.
 #[must_use]
 pub fn find_labels(evidence: &Evidence, division: &Division) -> Vec<Label> {
@@ -277,7 +298,8 @@ pub fn find_labels(evidence: &Evidence, division: &Division) -> Vec<Label> {
         Method::Strips => side_by_side(evidence.threads, |side| {
             let Ground { look, space } = Ground::start(side, evidence.grid, evidence.threads, evidence.recall);
             let uprights = find_uprights(&evidence.grid.frame, &evidence.gradients.pixels);
-            let glance = Later::Made(Glance::new(&evidence.scene(), look.get(), &uprights));
+            let racks = find_racks_on_legs(&evidence.scene(), &uprights);
+            let glance = Later::Made(Glance::new(&evidence.scene(), look.get(), &uprights, &racks));
             let sketch = Sketch::beside(evidence, Sight::new(side, evidence, space, glance));
             strips::find(evidence, || *division, sketch, |_| Vec::<()>::new()).0
         }),

@@ -56,14 +56,13 @@ pub struct Glance<'a> {
 }
 
 impl<'a> Glance<'a> {
-    pub fn new(scene: &Scene<'a>, look: Look<'a>, uprights: &[Upright]) -> Self {
-        let racks = legs::find(scene, uprights);
+    pub fn new(scene: &Scene<'a>, look: Look<'a>, uprights: &[Upright], racks: &[legs::Rack]) -> Self {
         let on_legs: Vec<Row> = racks.iter().map(|rack| rack.row.clone()).collect();
         let count = scene.directions.angles.len();
         let mut views: Vec<_> = (0..count).map(|direction| Turned::new(scene, direction, &on_legs)).collect();
         for view in &mut views {
             view.take_frames(uprights);
-            view.take_pitches(&racks);
+            view.take_pitches(racks);
         }
         quarter::see(&mut views, scene, &look);
         Self { look, views, on_legs }

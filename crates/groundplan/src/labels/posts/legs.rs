@@ -63,10 +63,24 @@ pub struct Rack {
     frames: usize,
     /// How deep these are, metres.
     depth: f64,
+    /// How long a leg is along, or a plate, of which no more than a pixel need be seen, metres.
+    pub leg: f64,
     /// A plate is the first of them, and the last.
     closed: [bool; 2],
     /// It is two, back to back.
     is_double: bool,
+}
+
+impl Rack {
+    /// Where the outer sides of its legs are, across.
+    pub fn faces(&self) -> [f64; 2] {
+        wider(self.row.across, self.leg / 2.0)
+    }
+
+    /// What is seen along each of its faces, metres.
+    pub fn structure(&self) -> f64 {
+        self.frames as f64 * self.leg
+    }
 }
 
 /// The racks that some uprights are legs of, along each direction.
@@ -286,7 +300,8 @@ fn rack(direction: usize, row: &[Frame], pitch: f64, legs: &Legs, map: &Map) -> 
     let across = [mean(0), mean(1)];
     let mut sizes: Vec<f64> = row.iter().flat_map(|frame| legs.sizes_at(frame.at, frame.faces)).collect();
     sizes.sort_by(f64::total_cmp);
-    let least = sizes.get(sizes.len() / 2).map_or(0.0, |usual| SPECK * usual);
+    let usual = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+    let least = SPECK * usual;
     let is_leg = |place: f64| legs.sizes_at(place, across).any(|size| size >= least);
     let beyond = |from: f64, by: f64| {
         let mut off = 0.0;
@@ -305,7 +320,8 @@ fn rack(direction: usize, row: &[Frame], pitch: f64, legs: &Legs, map: &Map) -> 
     let along = [up_to_wall(first + below, -pitch, closed[0]), up_to_wall(last + above, pitch, closed[1])];
     let frames = ((along[1] - along[0]) / pitch).round() as usize + 1;
     let row = Row { direction, along, across, between: None };
-    Rack { depth: row.depth(), row, pitch, frames, closed, is_double: false }
+    let leg = (usual / 2.0).max(map.grid.frame.resolution);
+    Rack { depth: row.depth(), leg, row, pitch, frames, closed, is_double: false }
 }
 
 /// The rack that a frame is of which stands beside another one and has frames at its places, but for some that are lost
@@ -532,7 +548,7 @@ mod tests {
     fn two_racks_back_to_back_are_of_a_kind_with_one_as_deep() {
         let rack = |low: f64, depth: f64, pitch: f64| {
             let row = Row { direction: 0, along: [0.0, 4.0 * pitch], across: [low, low + depth], between: None };
-            Rack { row, pitch, frames: 5, depth, closed: [false; 2], is_double: false }
+            Rack { row, pitch, frames: 5, depth, leg: 0.1, closed: [false; 2], is_double: false }
         };
         let are_kinds = |others: &[Rack]| {
             let all = back_to_back([&[rack(0.0, 0.9, 0.95), rack(1.1, 0.9, 0.95)], others].concat());

@@ -2,6 +2,7 @@
 //! pillars.
 
 pub(super) mod bays;
+pub(super) mod faces;
 pub(super) mod framed;
 pub(super) mod frames;
 pub(super) mod grounds;

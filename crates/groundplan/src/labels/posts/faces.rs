@@ -1,0 +1,78 @@
+//! The faces of racks on legs as lines: a lidar sees no more of them than their legs, of which a radiogram has no peak.
+
+use super::legs::Rack;
+use crate::ends::wider;
+use crate::grid::{Frame, tidy};
+use crate::lines::Lines;
+use crate::parameters::Parameters;
+
+/// A face no further from a line lies along it, metres, or no more pixels.
+const NEAR: (f64, f64) = (0.12, 2.0);
+
+/// A face of racks in line.
+struct Face {
+    direction: u32,
+    offset: f64,
+    /// From the outer sides of the legs to their middles, metres.
+    depth: f64,
+    /// How long the racks are, and what is seen of them, metres.
+    length: f64,
+    structure: f64,
+}
+
+/// The lines, and where none follows a face of some racks on legs one along that. Where a least amplitude or a detail is asked for,
+/// with as much structure.
+pub fn with_faces(lines: Lines, racks: &[Rack], frame: &Frame, parameters: &Parameters) -> Lines {
+    let near = NEAR.0.max(NEAR.1 * frame.resolution);
+    let is_asked_for = parameters.lines_min_amplitude.is_some() || parameters.lines_detail.is_some();
+    let least = if is_asked_for { lines.min_amplitude } else { 0.0 };
+    let is_line = |face: &Face| {
+        let own = lines.directions.partition_point(|&n| n < face.direction);
+        let end = lines.directions.partition_point(|&n| n <= face.direction);
+        let [low, high] = wider([face.offset; 2], near + face.depth);
+        let first = own + lines.offsets[own..end].partition_point(|&offset| offset < low);
+        lines.offsets[first..end].first().is_some_and(|&offset| offset <= high)
+    };
+    let mut more = faces(racks, near);
+    more.retain(|face| face.structure >= least && !is_line(face));
+    if more.is_empty() {
+        return lines;
+    }
+    let found = (0..lines.len()).map(|n| (lines.directions[n], lines.offsets[n], lines.amplitudes[n], lines.widths[n]));
+    let own = more.iter().map(|face| (face.direction, tidy(face.offset), tidy(face.structure), tidy(frame.resolution)));
+    let mut all: Vec<_> = found.chain(own).collect();
+    all.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    Lines {
+        directions: all.iter().map(|line| line.0).collect(),
+        offsets: all.iter().map(|line| line.1).collect(),
+        amplitudes: all.iter().map(|line| line.2).collect(),
+        widths: all.iter().map(|line| line.3).collect(),
+        min_amplitude: lines.min_amplitude,
+    }
+}
+
+/// The faces of some racks, those of racks in line together.
+fn faces(racks: &[Rack], near: f64) -> Vec<Face> {
+    let face = |rack: &Rack, offset: f64| Face {
+        direction: rack.row.direction as u32,
+        offset,
+        depth: rack.leg / 2.0,
+        length: rack.row.length(),
+        structure: rack.structure(),
+    };
+    let mut all: Vec<Face> = racks.iter().flat_map(|rack| rack.faces().map(|offset| face(rack, offset))).collect();
+    all.sort_by(|a, b| a.direction.cmp(&b.direction).then(a.offset.total_cmp(&b.offset)));
+    let in_line = |a: &Face, b: &Face| a.direction == b.direction && b.offset - a.offset <= near / 2.0;
+    let common = |faces: &[Face]| {
+        let sum = |of: fn(&Face) -> f64| faces.iter().map(of).sum::<f64>();
+        let length = sum(|face| face.length);
+        Face {
+            direction: faces[0].direction,
+            offset: sum(|face| face.offset * face.length) / length,
+            depth: sum(|face| face.depth * face.length) / length,
+            length,
+            structure: sum(|face| face.structure),
+        }
+    };
+    all.chunk_by(in_line).map(common).collect()
+}
