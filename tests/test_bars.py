@@ -161,10 +161,10 @@ def test_a_way_one_bay_wide_between_bars_through_the_only_double_row_is_no_empty
                 for n in range(bays + 1):
                     for low in (y, y + 0.9):
                         yield x + 2.6 * n - 0.05, low, x + 2.6 * n + 0.05, low + 0.1
-                for n in (0, bays):
-                    yield x + 2.6 * n - 0.05, y, x + 2.6 * n + 0.05, y + 1.0
-                for n in np.flatnonzero(draws.random(bays) < 0.7):
-                    for left in (x + 2.6 * n + 0.15, x + 2.6 * n + 1.35):
+                for end in (0, bays):
+                    yield x + 2.6 * end - 0.05, y, x + 2.6 * end + 0.05, y + 1.0
+                for bay in np.flatnonzero(draws.random(bays) < 0.7):
+                    for left in (x + 2.6 * bay + 0.15, x + 2.6 * bay + 1.35):
                         yield left, y + 0.1, left + 1.1, y + 0.9
 
     survey = groundplan.survey(drawn(33.0, 8.8, boxes()), resolution=0.05)

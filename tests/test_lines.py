@@ -164,9 +164,8 @@ def test_a_rack_whose_faces_are_lines_has_no_others() -> None:
 
 def test_of_racks_on_legs_as_much_has_to_be_seen_as_is_asked_of_lines() -> None:
     map = groundplan.from_array(racks_on_legs(), RESOLUTION)
-    least = {"lines_min_amplitude": 3.0}
-    seen = [len(along_faces(groundplan.survey(map, **asked), 0.0)) for asked in ({}, least)]
-    assert seen == [10, 2]
+    surveys = groundplan.survey(map), groundplan.survey(map, lines_min_amplitude=3.0)
+    assert [len(along_faces(survey, 0.0)) for survey in surveys] == [10, 2]
 
 
 def test_lines_that_are_given_and_those_of_the_papers_labels_stay_as_they_are() -> None:
