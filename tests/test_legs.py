@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+import shapely
 from _legs import RESOLUTION, Box, Picture, hall, legs, with_a_way
 
 import groundplan
@@ -271,3 +272,29 @@ def test_what_a_map_shows_twice_is_one_rack() -> None:
 
     found = counts(hall(25.0, 15.3, boxes()))
     assert found == {"rack": 3, "corridor": 6, "junction": 8, "pillar": 0}
+
+
+@pytest.mark.parametrize("share", [0.4, 0.6])
+@pytest.mark.parametrize("racks", [1, 2])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_way_two_shelves_wide_in_which_no_post_stands_is_no_shelf(seed: int, racks: int, share: float) -> None:
+    draws = np.random.default_rng(seed)
+    apart, depth = 2.5 + 0.9 * racks, 0.9 * racks
+    gaps = draws.integers(6, 22, 4)
+
+    def boxes() -> Iterator[Box]:
+        for n, gap in enumerate(gaps):
+            for y in (3.0 + apart * n + 0.9 * rack for rack in range(racks)):
+                for first, end in ((0, gap), (gap + 2, 30)):
+                    yield from legs(4.0 + 1.25 * first, y, end - first, 0.85, 1.25)
+                    for bay in first + np.flatnonzero(draws.random(end - first) < share):
+                        yield 4.13 + 1.25 * bay, y + 0.05, 5.21 + 1.25 * bay, y + 0.8
+
+    height = 5.5 + 4 * apart
+    survey = groundplan.survey(hall(45.5, height, boxes()), resolution=RESOLUTION)
+    across = [shapely.Polygon(way["polygon"]) for way in survey.of_kind("corridor") if way["name"][0] == "C"]
+    side = survey.map.width * RESOLUTION / 2
+    middles = [(4.0 + 1.25 * (gap + 1) - 22.75, 3.0 + apart * n + depth / 2 - height / 2) for n, gap in enumerate(gaps)]
+    assert all(any(way.contains(shapely.Point(side + x, side + y)) for way in across) for x, y in middles)
+    # Those past the rows' ends are two more; some of the others may be in line.
+    assert len(across) <= 6

@@ -168,6 +168,22 @@ def test_of_racks_on_legs_as_much_has_to_be_seen_as_is_asked_of_lines() -> None:
     assert [len(along_faces(survey, 0.0)) for survey in surveys] == [10, 2]
 
 
+@pytest.mark.parametrize("detail", [0.8, 0.9, 1.0])
+def test_a_fine_detail_has_the_faces_of_racks_on_legs_that_the_default_has(detail: float) -> None:
+    survey = groundplan.survey(racks_on_legs(), resolution=RESOLUTION, lines_detail=detail)
+    assert all(np.min(np.abs(np.subtract(along_faces(survey, 0.0), face))) < 0.1 for face in FACES)
+
+
+def test_racks_on_legs_have_no_line_twice_in_whatever_order_lines_are_given() -> None:
+    map = groundplan.from_array(racks_on_legs(), RESOLUTION)
+    directions, lines = groundplan.find_directions(map), groundplan.survey(map).lines
+    order = np.random.default_rng(1).permutation(len(lines))
+    shuffled = groundplan.Lines.of(lines.directions[order], lines.offsets[order])
+    assert len(groundplan.add_rack_faces(map, directions, shuffled)) == len(lines)
+    none = groundplan.Lines.of([], [])
+    assert len(groundplan.add_rack_faces(map, directions, none, lines_min_amplitude=50.0)) == 0
+
+
 def test_lines_that_are_given_and_those_of_the_papers_labels_stay_as_they_are() -> None:
     map = groundplan.from_array(racks_on_legs(), RESOLUTION)
     given = groundplan.find_lines(groundplan.find_radiograms(map, groundplan.find_directions(map)))

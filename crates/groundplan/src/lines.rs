@@ -47,7 +47,7 @@ const WIDTHS_PIXELS: (f64, f64) = (1.0, 20.0);
 const EXPLAINED: f64 = 0.97;
 /// Where all lines stand out, the least of them are no noise: what has so much of a typical line, and so many metres, is
 /// kept all the same, such as the ends of a few rows.
-const SHORT: (f64, f64) = (0.02, 2.0);
+pub(crate) const SHORT: (f64, f64) = (0.02, 2.0);
 /// Detail 1 lets through a line with this share of what the strongest lines have.
 const FINEST: f64 = 0.01;
 

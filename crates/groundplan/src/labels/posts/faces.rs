@@ -1,9 +1,9 @@
 //! The faces of racks on legs as lines: a lidar sees no more of them than their legs, of which a radiogram has no peak.
 
 use super::legs::Rack;
-use crate::ends::wider;
+use crate::ends::{holds, wider};
 use crate::grid::{Frame, tidy};
-use crate::lines::Lines;
+use crate::lines::{Lines, SHORT};
 use crate::parameters::Parameters;
 
 /// A face no further from a line lies along it, metres, or no more pixels.
@@ -20,18 +20,18 @@ struct Face {
     structure: f64,
 }
 
-/// The lines, and where none follows a face of some racks on legs one along that. Where a least amplitude or a detail is asked for,
-/// with as much structure.
+/// The lines, and where none follows an outer face of some racks on legs one along that. Where a least amplitude is asked for, or a
+/// detail that asks more of lines than they are let through for anyhow, with as much structure.
 pub fn with_faces(lines: Lines, racks: &[Rack], frame: &Frame, parameters: &Parameters) -> Lines {
     let near = NEAR.0.max(NEAR.1 * frame.resolution);
-    let is_asked_for = parameters.lines_min_amplitude.is_some() || parameters.lines_detail.is_some();
-    let least = if is_asked_for { lines.min_amplitude } else { 0.0 };
+    let least = match (parameters.lines_min_amplitude, parameters.lines_detail) {
+        (Some(metres), _) => metres,
+        (None, Some(_)) if lines.min_amplitude > SHORT.1 => lines.min_amplitude,
+        (None, _) => 0.0,
+    };
     let is_line = |face: &Face| {
-        let own = lines.directions.partition_point(|&n| n < face.direction);
-        let end = lines.directions.partition_point(|&n| n <= face.direction);
-        let [low, high] = wider([face.offset; 2], near + face.depth);
-        let first = own + lines.offsets[own..end].partition_point(|&offset| offset < low);
-        lines.offsets[first..end].first().is_some_and(|&offset| offset <= high)
+        let mut own = (0..lines.len()).filter(|&n| lines.directions[n] == face.direction);
+        own.any(|n| holds(wider([face.offset; 2], near + face.depth), lines.offsets[n]))
     };
     let mut more = faces(racks, near);
     more.retain(|face| face.structure >= least && !is_line(face));

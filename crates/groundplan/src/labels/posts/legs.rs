@@ -256,8 +256,8 @@ fn bays_between(one: &Frame, other: &Frame, pitch: f64) -> Option<usize> {
     (bays >= 1.0 && (gap - bays * pitch).abs() <= NEAR).then_some(bays as usize)
 }
 
-/// True when plates end racks of a row: no more of its frames are some, or of those that goods leave to be seen each is the row's
-/// first or last, or faces just one.
+/// True when plates end racks of a row: no more of its frames are some, or of those that goods leave to be seen the first and the
+/// last are, and each other one faces just one.
 fn are_ends(row: &[Frame], pitch: f64) -> bool {
     let plates = row.iter().filter(|frame| frame.is_plate).count();
     let face = |n: usize| {
@@ -269,7 +269,8 @@ fn are_ends(row: &[Frame], pitch: f64) -> bool {
         let faced = usize::from(n > 0 && face(n - 1)) + usize::from(n < last && face(n));
         faced == 1 || faced == 0 && (n == 0 || n == last)
     };
-    2 * plates <= row.len() || row.len() >= plates + OTHERS && (0..row.len()).filter(|&n| row[n].is_plate).all(is_end)
+    let is_closed = || row[0].is_plate && row[last].is_plate && row.len() >= plates + OTHERS;
+    2 * plates <= row.len() || is_closed() && (0..row.len()).filter(|&n| row[n].is_plate).all(is_end)
 }
 
 /// A row of frames, parted where one does not follow another at a pitch.

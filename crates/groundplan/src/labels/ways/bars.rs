@@ -94,6 +94,11 @@ impl Told {
         self.sides.is_as(self.ends, self.bays)
     }
 
+    /// They stand at all sides, and at most ends.
+    fn is_closed(&self) -> bool {
+        self.sides.open == 0 && self.ends.closed > self.ends.open
+    }
+
     /// None stands there, as beside bays.
     fn is_bay(&self) -> bool {
         self.sides.closed == 0 && self.sides.is_as(self.bays, self.ends)
@@ -126,17 +131,14 @@ impl<'a> Bars<'a> {
     }
 
     /// True when what one of the strips passes through of the rows, between their ends, lies between bars and is no narrower than a
-    /// bay, if bays are known. Through racks back to back it may be narrower by a post if bars stand at all its sides: goods seldom
-    /// line up so there.
+    /// bay, if bays are known. Through all rows that there are it may be narrower by a post if these are of two racks and bars stand
+    /// at all its sides: goods seldom line up so there.
     pub fn are_beside(&self, n: usize) -> bool {
-        let (own, width) = (&self.place.passing[n], self.strips[n].width());
-        let bay = self.place.pitch_of(own);
-        let leaves_no_bay = |least: &dyn Fn(f64) -> f64| bay.is_none_or(|bay| width >= least(bay));
-        leaves_no_bay(&|bay| AS_WIDE * bay) && self.tell(n)
-            || leaves_no_bay(&|bay| bay - POST)
-                && own.next.is_empty()
-                && self.place.are_double(own)
-                && self.are_all_beside(n)
+        let own = &self.place.passing[n];
+        let bay = self.place.pitch_of(own).unwrap_or(0.0);
+        let is_as_wide = |least: f64| self.strips[n].width() >= least;
+        let is_all = || own.next.is_empty() && self.place.are_double(own) && self.are_all_beside(n);
+        is_as_wide(AS_WIDE * bay) && self.tell(n) || is_as_wide(bay - POST) && is_all()
     }
 
     /// True when bars stand beside what one of the strips passes through of the rows as at their ends, and not as beside bays.
@@ -171,15 +173,13 @@ impl<'a> Bars<'a> {
     }
 
     /// True when bars stand at all sides of what one of the strips passes through, and end most rows.
-    pub fn are_all_beside(&self, n: usize) -> bool {
-        self.told(n, &self.place.passing[n].rows)
-            .is_some_and(|Told { sides, ends, .. }| sides.open == 0 && ends.closed > ends.open)
+    fn are_all_beside(&self, n: usize) -> bool {
+        self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_closed())
     }
 
-    /// True when bars stand on both sides of one of the strips and end most rows, and beside no bay.
+    /// True when they do, and beside no bay.
     pub fn stand_beside_no_bays(&self, n: usize) -> bool {
-        self.told(n, &self.place.passing[n].rows)
-            .is_some_and(|Told { sides, ends, bays }| sides.open + bays.closed == 0 && ends.closed > ends.open)
+        self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_closed() && told.bays.closed == 0)
     }
 
     /// True when each of the rows whose ends one of the strips leads past ends there at a bar, as most do in that part of the

@@ -8,6 +8,7 @@ use super::passing::{self, Place};
 use super::step::{self, Section};
 use super::thin;
 use super::through::{BETWEEN_CELLS, Through};
+use super::unposted;
 use super::walled;
 use super::widths::Widths;
 use crate::bands::flat_map_each;
@@ -71,6 +72,8 @@ pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a 
     // What leads through each row is counted in whole rows.
     let whole = whole.map(|rows| Through::new(views, strips, rows));
     let in_each_row = whole.as_ref().unwrap_or(&through).in_each_row();
+    let mut unposted = unposted::find(whole.as_ref().unwrap_or(&through).rows(), strips.len());
+    unposted.retain(|gate| !strips.iter().any(|way| is_in(gate, way)));
     for (gate, is_as_a_bay) in through.at_walls(strips, &placed) {
         let found = if is_as_a_bay { &mut at_walls } else { &mut gates };
         found.push(gate);
@@ -119,10 +122,12 @@ pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a 
     gates.retain(|gate| !several.iter().chain(&turns).any(|way| is_in(gate, way)));
     gates.extend(several);
     gates.extend(at_walls.into_iter().chain(thin::gates(views, strips)));
-    let ways = in_line(gates);
+    let mut ways = in_line(gates);
+    ways.retain(|way| !unposted.iter().any(|gate| is_in(gate, way)));
     as_bays.extend(turns);
     as_bays.extend(as_wide_as_others(views, strips, &ways, in_each_row));
-    as_bays.retain(|gate| !ways.iter().any(|way| is_in(gate, way)));
+    as_bays.retain(|gate| !ways.iter().chain(&unposted).any(|way| is_in(gate, way)));
+    as_bays.extend(unposted);
     Gates { known: all_known, ways, as_bays: in_line(as_bays) }
 }
 

@@ -18,6 +18,7 @@ pub(super) mod step;
 pub(super) mod thin;
 pub(super) mod through;
 pub(super) mod turns;
+pub(super) mod unposted;
 pub(super) mod walled;
 pub(super) mod widths;
 
@@ -215,7 +216,6 @@ impl<'a> Asked<'a> {
             && is_one_bay()
             && expected().is_some_and(|expected| expected > ANYWHERE)
             && !self.context.bars.tell(self.n)
-            && !self.context.bars.are_all_beside(self.n)
     }
 
     /// True when it leads through some rows alone of those beside one another, and something tells of these: what leads past the
