@@ -32,7 +32,10 @@ const SEVERAL: usize = 3;
 /// between them.
 pub fn find(seen: &[Seen], aisles: usize) -> Vec<Strip> {
     let mut places = Sets::new(aisles);
-    seen.iter().for_each(|row| places.join_first(row.between[0] as u32, row.between[1] as u32));
+    for row in seen {
+        let [one, other] = row.between.map(|aisle| aisle as u32);
+        places.join_first(one, other);
+    }
     let mut rows: BTreeMap<_, Vec<(&Seen, Gaps)>> = BTreeMap::new();
     for row in seen {
         rows.entry((row.row.direction, places.of(row.between[0] as u32))).or_default().push((row, Gaps::of(row)));
