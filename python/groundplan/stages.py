@@ -261,8 +261,8 @@ def add_rack_faces(
     """II-B: the lines, and those along the faces of racks on legs, of which a radiogram has no peak.
 
     A lidar that looks under the lowest beams sees no more of a rack than its legs. A line is added where those stand
-    as racks' do and none that is given follows them; with ``lines_min_amplitude`` or ``lines_detail`` where as much
-    structure is seen as of the others, and none with ``labels_method="paper"``.
+    as racks' do and none that is given follows them; with ``lines_min_amplitude``, or a ``lines_detail`` that lets
+    nothing through below 2 m, where as much structure is seen, and none with ``labels_method="paper"``.
 
     Parameters
     ----------
