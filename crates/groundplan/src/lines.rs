@@ -21,7 +21,27 @@ pub struct Lines {
     pub min_amplitude: f64,
 }
 
+/// One of them: its direction, offset, amplitude and width.
+pub(crate) type Line = (u32, f64, f64, f64);
+
 impl Lines {
+    /// Of some in any order.
+    pub(crate) fn of(mut all: Vec<Line>, min_amplitude: f64) -> Self {
+        all.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        Self {
+            directions: all.iter().map(|line| line.0).collect(),
+            offsets: all.iter().map(|line| line.1).collect(),
+            amplitudes: all.iter().map(|line| line.2).collect(),
+            widths: all.iter().map(|line| line.3).collect(),
+            min_amplitude,
+        }
+    }
+
+    /// Each of them.
+    pub(crate) fn each(&self) -> impl Iterator<Item = Line> {
+        (0..self.len()).map(|n| (self.directions[n], self.offsets[n], self.amplitudes[n], self.widths[n]))
+    }
+
     /// How many.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -59,18 +79,11 @@ pub fn find_lines(radiograms: &[Radiogram], parameters: &Parameters, threads: us
     let amplitudes: Vec<f64> = found.iter().map(|f| f.2).collect();
     let least = least_amplitude(&amplitudes, parameters);
     found.retain(|f| f.2 >= least);
-    found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    Lines {
-        directions: found.iter().map(|f| f.0).collect(),
-        offsets: found.iter().map(|f| f.1).collect(),
-        amplitudes: found.iter().map(|f| f.2).collect(),
-        widths: found.iter().map(|f| f.3).collect(),
-        min_amplitude: least,
-    }
+    Lines::of(found, least)
 }
 
-/// Direction, offset, amplitude and width of the lines of one radiogram.
-fn lines_of(radiogram: &Radiogram, parameters: &Parameters) -> Vec<(u32, f64, f64, f64)> {
+/// The lines of one radiogram.
+fn lines_of(radiogram: &Radiogram, parameters: &Parameters) -> Vec<Line> {
     let signal = &radiogram.values;
     let peaks = wavelets::peaks(&respond(radiogram, parameters), parameters.lines_snr);
     let line = |(n, peak): (usize, &Peak)| {

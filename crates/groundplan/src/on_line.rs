@@ -1,7 +1,15 @@
 //! Which of a direction's lines a place lies on: asked of every edge pixel, most of which are on none.
 
-use crate::grid::whole;
+use crate::grid::{Frame, whole};
 use std::ops::Range;
+
+/// Places this near to a line lie on it, metres, or at least so many pixels.
+const NEAR: (f64, f64) = (0.12, 2.0);
+
+/// Edge pixels this near to a line lie on it, metres.
+pub fn near(frame: &Frame) -> f64 {
+    NEAR.0.max(NEAR.1 * frame.resolution)
+}
 
 /// Lines of one direction, and how near to one a place lies on it.
 pub struct OnLine<'a> {

@@ -4,10 +4,8 @@ use super::legs::Rack;
 use crate::ends::{holds, wider};
 use crate::grid::{Frame, tidy};
 use crate::lines::{Lines, SHORT};
+use crate::on_line;
 use crate::parameters::Parameters;
-
-/// A face no further from a line lies along it, metres, or no more pixels.
-const NEAR: (f64, f64) = (0.12, 2.0);
 
 /// A face of racks in line.
 struct Face {
@@ -23,7 +21,7 @@ struct Face {
 /// The lines, and where none follows an outer face of some racks on legs one along that. Where a least amplitude is asked for, or a
 /// detail that asks more of lines than they are let through for anyhow, with as much structure.
 pub fn with_faces(lines: Lines, racks: &[Rack], frame: &Frame, parameters: &Parameters) -> Lines {
-    let near = NEAR.0.max(NEAR.1 * frame.resolution);
+    let near = on_line::near(frame);
     let least = match (parameters.lines_min_amplitude, parameters.lines_detail) {
         (Some(metres), _) => metres,
         (None, Some(_)) if lines.min_amplitude > SHORT.1 => lines.min_amplitude,
@@ -38,17 +36,8 @@ pub fn with_faces(lines: Lines, racks: &[Rack], frame: &Frame, parameters: &Para
     if more.is_empty() {
         return lines;
     }
-    let found = (0..lines.len()).map(|n| (lines.directions[n], lines.offsets[n], lines.amplitudes[n], lines.widths[n]));
     let own = more.iter().map(|face| (face.direction, tidy(face.offset), tidy(face.structure), tidy(frame.resolution)));
-    let mut all: Vec<_> = found.chain(own).collect();
-    all.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    Lines {
-        directions: all.iter().map(|line| line.0).collect(),
-        offsets: all.iter().map(|line| line.1).collect(),
-        amplitudes: all.iter().map(|line| line.2).collect(),
-        widths: all.iter().map(|line| line.3).collect(),
-        min_amplitude: lines.min_amplitude,
-    }
+    Lines::of(lines.each().chain(own).collect(), lines.min_amplitude)
 }
 
 /// The faces of some racks, those of racks in line together.

@@ -8,7 +8,7 @@ use crate::bands::map_each;
 use crate::ends::around;
 use crate::gradients;
 use crate::grid::{Frame, angle_between};
-use crate::on_line::OnLine;
+use crate::on_line::{self, OnLine};
 use crate::subdivision::distance;
 
 /// A straight closure of a gap, jamb to jamb, in the raster's places; both ends lie in free space.
@@ -58,8 +58,6 @@ const WALL: f64 = 0.5;
 /// and over so much of it, metres, from the gap on, edge pixels lie along the line for at least this share.
 const JAMB: f64 = 0.6;
 const LINED: f64 = 0.6;
-/// Edge pixels this near to a line lie on it: metres, and pixels at least.
-const ON_LINE: (f64, f64) = (0.12, 2.0);
 
 /// A jamb lies within so many pixels of a bar's end.
 const JAMB_PIXELS: i32 = 4;
@@ -125,7 +123,7 @@ fn lined(evidence: &Evidence, raster: &Raster, angle: f64, offsets: &[f64]) -> V
 
 /// Edge pixels this near to a line lie on it, pixels.
 fn on_line(frame: &Frame) -> f64 {
-    (ON_LINE.0 / frame.resolution).max(ON_LINE.1)
+    on_line::near(frame) / frame.resolution
 }
 
 /// Keys of what gaps are found from: of the map, and of what is free on the raster.

@@ -6,12 +6,9 @@ use crate::gradients;
 use crate::grid::Frame;
 use crate::labels::Evidence;
 use crate::labels::recall::Key;
-use crate::on_line::OnLine;
+use crate::on_line::{self, OnLine};
 use crate::radiograms::weight;
 use std::sync::Arc;
-
-/// Pixels this near to a line lie on it, metres, or at least so many pixels.
-const NEAR: (f64, f64) = (0.12, 2.0);
 
 /// Lines with less structure than this, metres, and than this share of a strong line's, are no sides of corridors but
 /// the faces of single goods.
@@ -38,7 +35,7 @@ impl Turned {
             .map(|n| lines.offsets[n])
             .collect();
         offsets.sort_by(f64::total_cmp);
-        let near = Self::near_line(frame);
+        let near = on_line::near(frame);
         let mut are_sides = vec![false; offsets.len()];
         for (offset, _) in self.grounds.sides() {
             let at = offsets.partition_point(|&other| other < offset);
@@ -61,7 +58,7 @@ impl Turned {
 
     /// Takes over what is known of its lines, but for those that are sides of racks which do not stand there.
     pub fn lie(&mut self, frame: &Frame, lined: &Lined) {
-        let near = Self::near_line(frame);
+        let near = on_line::near(frame);
         let sides = self.grounds.sides();
         let mut is_there: Vec<bool> = lined.are_sides.iter().map(|is_side| !is_side).collect();
         let known = OnLine::new(&lined.offsets, near);
@@ -84,17 +81,12 @@ impl Turned {
         (self.covered, self.touched) = (Arc::new(covered), Arc::new(touched));
     }
 
-    /// Edge pixels this near to a line lie on it, metres.
-    fn near_line(frame: &Frame) -> f64 {
-        NEAR.0.max(NEAR.1 * frame.resolution)
-    }
-
     /// The key of all edge pixels on a line, where what is found is kept.
     pub fn key_on_line(&self, evidence: &Evidence, offset: f64) -> Key {
         let Some(patches) = evidence.recall.patches(evidence.grid, evidence.threads) else { return Key::default() };
         let frame = &evidence.grid.frame;
         // And the pixels around that bear on them.
-        let beside = Self::near_line(frame) + gradients::reach_across(frame.resolution, evidence.parameters);
+        let beside = on_line::near(frame) + gradients::reach_across(frame.resolution, evidence.parameters);
         let at = |u: f64, v: f64| frame.to_pixels(self.to_map([self.start[0] + u, v]));
         let lanes = [offset - beside, offset + beside].map(|v| at(0.0, v));
         let next = at(self.cell, offset - beside);
@@ -106,7 +98,7 @@ impl Turned {
     /// In which columns edge pixels on some lines lie along them, and in which any do.
     fn on_lines(&self, evidence: &Evidence, offsets: &[f64]) -> Vec<[Bits; 2]> {
         let frame = &evidence.grid.frame;
-        let lines = OnLine::new(offsets, Self::near_line(frame));
+        let lines = OnLine::new(offsets, on_line::near(frame));
         let mut found = vec![[Bits::new(self.size[0]), Bits::new(self.size[0])]; offsets.len()];
         let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
         let on_grid = frame.angle_to_grid(self.angle);
