@@ -32,6 +32,7 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
         let is_way = |opening: &Opening| {
             opening.is_frontier
                 && is_alike(&opening.way)
+                && (!opening.is_as_bay || is_led_to(views, &opening.way, &ways, &placed))
                 && (is_held(opening)
                     || is_between_rows(opening)
                         && (is_along_rows(&opening.way) || is_led_to(views, &opening.way, &ways, &placed))

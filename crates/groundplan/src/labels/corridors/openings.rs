@@ -45,6 +45,8 @@ pub struct Opening {
     pub stands: [f64; 2],
     /// It ends at a frontier: nothing stands there.
     pub is_frontier: bool,
+    /// It is no wider than a bay of a row along the way past it.
+    pub is_as_bay: bool,
 }
 
 /// From post to post along each direction, metres, where rows run along it: other than these nothing has bays.
@@ -136,11 +138,10 @@ impl Passing<'_> {
         depths
     }
 
-    /// So many columns are as wide as a way, and wider than a bay of a row along the way past them.
+    /// So many columns are as wide as a way.
     fn is_wide_as_way(&self, columns: usize) -> bool {
-        let width = self.metres(columns);
-        (self.parameters.labels_min_width.max(WIDTH.0)..=self.parameters.labels_max_width).contains(&width)
-            && self.pitch.is_none_or(|pitch| width > BAY * pitch)
+        let least = self.parameters.labels_min_width.max(WIDTH.0);
+        (least..=self.parameters.labels_max_width).contains(&self.metres(columns))
     }
 
     /// True when at either side of some columns, of which the way's are given, a row ends, be its first bay empty, or the way
@@ -183,6 +184,7 @@ impl Passing<'_> {
             held,
             stands,
             is_frontier: cells < self.most() && shut as f64 <= SHUT * depths.len() as f64,
+            is_as_bay: self.pitch.is_some_and(|pitch| width <= BAY * pitch),
         })
     }
 
