@@ -37,7 +37,7 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
         let placed = placed(views, strips.iter().map(Strip::place));
         let meetings = junctions::find(views, &strips, threads);
         let met = of_each(&meetings, strips.len());
-        let is_shut = |n: usize| (0..2).all(|side| shut::is_shut(views, &strips[n], side));
+        let is_shut = |n: usize| (0..2).all(|side| shut::is_shut(&views[strips[n].direction], &strips[n], side));
         let goes_on =
             |n: usize, metres: f64, (widths, least): (f64, f64)| metres >= least.max(widths * strips[n].width());
         let leads = |n: usize| {
@@ -46,10 +46,11 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
                 let free_end = usize::from(two > one);
                 // It has been drawn as far as its sides were seen, which may be where the junction begins: what leads on
                 // there is drawn on to its middle later, a room with jambs or a wall is not.
-                let is_parted = || (0..2).any(|side| shut::is_parted(views, &strips[n], side));
+                let is_parted = || (0..2).any(|side| shut::is_parted(&views[strips[n].direction], &strips[n], side));
                 let within = if is_parted() { reach(&meetings[m], n) } else { 0.0 };
                 let most = one.max(two).min(strips[n].length() - within);
-                let ends_unseen = || strips[n].is_ragged && shut::is_unseen(views, &strips[n], free_end);
+                let ends_unseen =
+                    || strips[n].is_ragged && shut::is_unseen(&views[strips[n].direction], &strips[n], free_end);
                 let leads_on = goes_on(n, most, NICHE)
                     || goes_on(n, one + two, NICHES)
                     || goes_on(n, most, UNSEEN) && ends_unseen();

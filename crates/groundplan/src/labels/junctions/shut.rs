@@ -13,6 +13,8 @@ use std::ops::Range;
 /// A corridor goes on beyond a junction when it does so for this long, metres, and where a wall ends it, for this share
 /// of its width: less is what is left of it at a corner.
 pub const ARM: (f64, f64) = (1.6, 0.65);
+/// And where nothing was seen beyond, for this long.
+const FRONTIER: f64 = 1.2;
 /// A side goes on to a wall where over this share of the way something stands on it.
 const SIDED: f64 = 0.7;
 /// What stands within this share of its width of a corridor's sides does not close it.
@@ -46,32 +48,30 @@ pub fn goes_on(view: &Turned, strip: &Strip, side: usize, beyond: f64) -> bool {
         let is_sided = |at: f64| view.share_touched(columns.clone(), at - CORNER, at + CORNER) >= SIDED;
         beyond + more >= least && more > WAY_IN && strip.across.into_iter().any(is_sided)
     };
-    beyond >= ARM.0 && (beyond >= least || closed(view, strip, side, LOOK).is_none_or(reaches))
+    let is_long = beyond >= ARM.0 || beyond >= FRONTIER && is_unseen(view, strip, side);
+    is_long && (beyond >= least || closed(view, strip, side, LOOK).is_none_or(reaches))
 }
 
 /// True when a wall closes a strip at one of its ends, be there a door in it.
-pub fn is_shut(views: &[Turned], strip: &Strip, side: usize) -> bool {
-    let view = &views[strip.direction];
+pub fn is_shut(view: &Turned, strip: &Strip, side: usize) -> bool {
     let end = strip.along[side];
     let [from, to] = [end - SHUT, end + SHUT].map(|u| view.column(u));
     closed(view, strip, side, SHUT).is_some() || barriers::across(view, strip.across, from..to + 1).any()
 }
 
 /// True when at one of a strip's ends it is shut, or jambs stand, or what else stands across a part of it.
-pub fn is_parted(views: &[Turned], strip: &Strip, side: usize) -> bool {
-    let view = &views[strip.direction];
+pub fn is_parted(view: &Turned, strip: &Strip, side: usize) -> bool {
     let [from, to] = wider([strip.along[side]; 2], DEEP).map(|u| view.column(u));
     let [low, high] = wider(strip.across, -JAMBS.0);
     let stands = (from..to).map(|n| view.occupied(n, low, high)).sum::<f64>();
-    stands >= JAMBS.1 || is_shut(views, strip, side)
+    stands >= JAMBS.1 || is_shut(view, strip, side)
 }
 
 /// True when nothing was seen beyond one of a strip's ends: neither what shuts it nor floor.
-pub fn is_unseen(views: &[Turned], strip: &Strip, side: usize) -> bool {
-    let view = &views[strip.direction];
+pub fn is_unseen(view: &Turned, strip: &Strip, side: usize) -> bool {
     let beyond = sorted([BEYOND.0, BEYOND.1].map(|metres| strip.along[side] + sign(side) * metres));
     let [low, high] = inner(strip);
-    view.mean_blocked(view.columns(beyond), low, high) > FLOOR && !is_shut(views, strip, side)
+    view.mean_blocked(view.columns(beyond), low, high) > FLOOR && !is_shut(view, strip, side)
 }
 
 /// True when something stands across a strip in a column, or in one beside it.
