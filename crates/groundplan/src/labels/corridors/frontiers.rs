@@ -3,7 +3,7 @@
 
 use super::openings::{self, Opening};
 use super::ragged;
-use crate::ends::{around, both, holds, shared, wider};
+use crate::ends::{around, both, holds, overlap, shared, sorted, wider};
 use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::Strip;
 use crate::labels::junctions::shut;
@@ -27,8 +27,18 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
     let pitches = openings::pitches(views, rows);
     let is_alike = |way: &Strip| strips.iter().any(|one| one.direction == way.direction && one.is_as_wide(way));
     let is_along_rows = |way: &Strip| rows.iter().any(|row| row.direction == way.direction);
-    for passing in strips {
-        let found = openings::of(views, passing, &pitches, parameters).into_iter();
+    let mut rest: Vec<Strip> = strips.iter().rev().cloned().collect();
+    while let Some(passing) = &rest.pop() {
+        let all = openings::of(views, passing, &pitches, parameters);
+        for way in at_ends(views, passing, &all) {
+            let near = placed[way.direction].touching(way.along, way.across).into_iter();
+            if near.filter(|&n| ragged::is_beside(&ways[n], &way)).next().is_none() {
+                placed[way.direction].add(ways.len(), way.along, way.across);
+                rest.push(way.clone());
+                ways.push(way);
+            }
+        }
+        let found = all.into_iter();
         let is_way = |opening: &Opening| {
             opening.is_frontier
                 && is_alike(&opening.way)
@@ -59,6 +69,38 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
         }
     }
     (ways != strips).then_some(ways)
+}
+
+/// What leads to both sides at an end of a way, before one wall: there what opens on the one side is in line with what opens
+/// on the other, and both lie between the wall and the end of a row.
+fn at_ends(views: &[Turned], passing: &Strip, openings: &[Opening]) -> Vec<Strip> {
+    let view = &views[passing.direction];
+    // Which of its ends lies within what opens, or at its side, and a wall there closes it.
+    let is_at_end = |way: &Strip| {
+        let at = sorted(way.across.map(|across| view.crossing(&views[way.direction], passing.middle(), across)[1]));
+        (0..2).any(|side| {
+            holds(wider(at, IN_LINE), passing.along[side]) && {
+                let outer = at[side];
+                shut::closed(view, passing, side, (outer - passing.along[side]).abs() + IN_LINE).is_some()
+            }
+        })
+    };
+    let mut found = Vec::new();
+    for (n, one) in openings.iter().enumerate() {
+        for two in &openings[n + 1..] {
+            let is_one = is_in_line(&one.way, &two.way) && overlap(one.way.along, two.way.along) <= 0.0;
+            if is_one
+                && [one, two].iter().all(|opening| !opening.is_as_bay && is_held(opening) && is_at_end(&opening.way))
+            {
+                found.push(Strip {
+                    along: both(one.way.along, two.way.along),
+                    across: shared(one.way.across, two.way.across),
+                    ..one.way.clone()
+                });
+            }
+        }
+    }
+    found
 }
 
 /// True when what opens lies between two sides of which one may be no more than the end of a row.

@@ -78,7 +78,14 @@ impl Passing<'_> {
     fn openings(&self) -> Vec<Opening> {
         let columns = self.free();
         let depths = self.depths(&columns);
-        let deep: Vec<bool> = depths.iter().map(|depth| self.metres(*depth) >= DEEP.0).collect();
+        let mut deep: Vec<bool> = depths.iter().map(|depth| self.is_deep(*depth)).collect();
+        // Of what opens the middle may not have been seen so far, where only what a ray hits tells that it is free up to there.
+        for (from, to) in runs(&deep, false) {
+            let is_within = from > 0 && to < deep.len();
+            if is_within && !(from..to).any(|n| self.stands(columns.start + n, depths[n])) {
+                deep[from..to].fill(true);
+            }
+        }
         let opens = |&(from, to): &(usize, usize)| {
             self.is_wide_as_way(to - from) && self.has_corners(&columns, &depths, from..to)
         };
@@ -90,6 +97,16 @@ impl Passing<'_> {
     /// So many cells, metres.
     fn metres(&self, cells: usize) -> f64 {
         cells as f64 * self.view.cell
+    }
+
+    fn is_deep(&self, cells: usize) -> bool {
+        self.metres(cells) >= DEEP.0
+    }
+
+    /// True when something stands where a column is free up to, so many cells beyond the side.
+    fn stands(&self, column: usize, depth: usize) -> bool {
+        let [low, high] = wider(self.beyond(depth), self.view.cell);
+        self.view.occupied(column, low, high) > 0.0
     }
 
     /// It is looked into so many cells deep.
@@ -161,16 +178,13 @@ impl Passing<'_> {
 
     /// What opens through some columns, where it is deep enough.
     fn opening(&self, columns: Range<usize>, depths: &[usize]) -> Option<Opening> {
-        let cells = median(depths);
+        let deep: Vec<usize> = depths.iter().copied().filter(|depth| self.is_deep(*depth)).collect();
+        let cells = median(&deep);
         let (depth, width) = (self.metres(cells), self.metres(columns.len()));
         if depth < DEEP.1 * width {
             return None;
         }
-        let stands = |(column, depth): (usize, &usize)| {
-            let [low, high] = wider(self.beyond(*depth), self.view.cell);
-            self.view.occupied(column, low, high) > 0.0
-        };
-        let shut = columns.clone().zip(depths).filter(|&at| stands(at)).count();
+        let shut = columns.clone().zip(depths).filter(|&(column, depth)| self.stands(column, *depth)).count();
         let sides = [columns.start, columns.end].map(|column| self.view.along(column));
         let end = self.beyond(cells)[usize::from(self.side == 0)];
         let corners = [[sides[0], self.way.across[self.side]], [sides[1], end]];
