@@ -7,7 +7,7 @@ use crate::labels::corridors::Strip;
 use crate::labels::junctions::shut;
 use crate::labels::rows::Row;
 use crate::labels::rows::sections::{BAY, WIDTH};
-use crate::labels::view::runs::runs;
+use crate::labels::view::runs::{Run, runs};
 use crate::labels::view::turned::Turned;
 use crate::labels::ways::across::square_to;
 use crate::parameters::Parameters;
@@ -79,17 +79,18 @@ impl Passing<'_> {
         let columns = self.free();
         let depths = self.depths(&columns);
         let mut deep: Vec<bool> = depths.iter().map(|depth| self.is_deep(*depth)).collect();
-        // Of what opens the middle may not have been seen so far, where only what a ray hits tells that it is free up to there.
+        let mut open = runs(&deep, true);
+        // And what may be one of which the middle was not seen so far: there only what a ray hits tells that it is free up to that.
         for (from, to) in runs(&deep, false) {
             let is_within = from > 0 && to < deep.len();
             if is_within && !(from..to).any(|n| self.stands(columns.start + n, depths[n])) {
                 deep[from..to].fill(true);
             }
         }
-        let opens = |&(from, to): &(usize, usize)| {
-            self.is_wide_as_way(to - from) && self.has_corners(&columns, &depths, from..to)
-        };
-        let open = runs(&deep, true).into_iter().filter(opens);
+        let whole = runs(&deep, true).into_iter().filter(|run| !open.contains(run)).collect::<Vec<_>>();
+        open.extend(whole);
+        let opens = |&(from, to): &Run| self.is_wide_as_way(to - from) && self.has_corners(&columns, &depths, from..to);
+        let open = open.into_iter().filter(opens);
         open.filter_map(|(from, to)| self.opening(columns.start + from..columns.start + to, &depths[from..to]))
             .collect()
     }
