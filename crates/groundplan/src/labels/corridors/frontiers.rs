@@ -1,6 +1,7 @@
 //! Ways that end at a frontier, between what was seen and what was not (Yamauchi 1997), before they are long enough for one:
 //! past the ends of two rows, or through a row in line with a way, a robot saw as far as its sensor reaches, and went on.
 
+use super::along_walls::{self, On};
 use super::openings::{self, Opening};
 use super::ragged;
 use crate::ends::{around, both, holds, overlap, shared, sorted, wider};
@@ -27,14 +28,19 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
     let pitches = openings::pitches(views, rows);
     let is_alike = |way: &Strip| strips.iter().any(|one| one.direction == way.direction && one.is_as_wide(way));
     let is_along_rows = |way: &Strip| rows.iter().any(|row| row.direction == way.direction);
-    let mut rest: Vec<Strip> = strips.iter().rev().cloned().collect();
-    while let Some(passing) = &rest.pop() {
+    // What a way leads on along a wall is one where another opens into that.
+    let mut rest: Vec<(Strip, Option<On>)> =
+        along_walls::find(views, strips, &placed).into_iter().map(|on| (on.floor.clone(), Some(on))).collect();
+    rest.extend(strips.iter().rev().map(|strip| (strip.clone(), None)));
+    while let Some((passing, on)) = rest.pop() {
+        let passing = &passing;
+        let mut leads_on = on.as_ref().is_some_and(|on| along_walls::is_led_to(views, on, &ways));
         let all = openings::of(views, passing, &pitches, parameters);
         for way in at_ends(views, passing, &all) {
             let near = placed[way.direction].touching(way.along, way.across).into_iter();
             if near.filter(|&n| ragged::is_beside(&ways[n], &way)).next().is_none() {
                 placed[way.direction].add(ways.len(), way.along, way.across);
-                rest.push(way.clone());
+                rest.push((way.clone(), None));
                 ways.push(way);
             }
         }
@@ -49,6 +55,7 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
                         && !is_through_another(views, &opening.way, passing, &ways, &placed))
         };
         for Opening { mut way, middle, .. } in found.filter(is_way).collect::<Vec<_>>() {
+            leads_on = true;
             way.along = both(way.along, [middle; 2]);
             let reaching = Strip { along: wider(way.along, passing.width() / 2.0), ..way.clone() };
             let near = placed[way.direction].touching(reaching.along, way.across).into_iter();
@@ -66,6 +73,10 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
                 _ => continue,
             };
             placed[ways[n].direction].add(n, ways[n].along, ways[n].across);
+        }
+        if let Some(on) = on.filter(|_| leads_on) {
+            ways[on.way].along = both(ways[on.way].along, on.along);
+            placed[passing.direction].add(on.way, ways[on.way].along, ways[on.way].across);
         }
     }
     (ways != strips).then_some(ways)

@@ -5,6 +5,7 @@
 //! Gaps in a side shorter than a rack's bay are the bay; longer ones are where other ways open. Of strips that overlap
 //! the one with the most wall along it is kept, and the others keep what is left of them.
 
+pub(super) mod along_walls;
 pub(super) mod askew;
 pub(super) mod barriers;
 pub(super) mod bends;

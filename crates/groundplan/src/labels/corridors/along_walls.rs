@@ -1,0 +1,92 @@
+//! Ways along a wall that lead on past the ends of rows: where these recede floor goes on, as wide as the way and wider, up to the
+//! wall at its end.
+
+use super::barriers;
+use super::ragged;
+use crate::ends::{both, sorted, wider};
+use crate::labels::beside::Beside;
+use crate::labels::corridors::Strip;
+use crate::labels::junctions::shut::{self, sign};
+use crate::labels::view::turned::Turned;
+
+/// The wall at its end is looked for so far, metres, and the ends of rows so far beside it.
+const LOOK: f64 = 60.0;
+const RECESS: f64 = 4.0;
+/// Up to so far before that nothing bars it, metres.
+const BEFORE: f64 = 0.5;
+/// The floor is free but for this share.
+const CLUTTER: f64 = 0.05;
+/// A wall stands so near to its side, metres, over so much of what it leads on; at the other side rows end over so much.
+const SIDE: f64 = 0.25;
+const WALLED: f64 = 0.8;
+const ENDED: f64 = 0.15;
+
+/// What a way leads on along a wall.
+pub struct On {
+    /// Which way, and from where to where it then leads along.
+    pub way: usize,
+    pub along: [f64; 2],
+    /// What is free of it there, up to where the first row ends.
+    pub floor: Strip,
+}
+
+/// What some ways lead on along walls; of all it is known where they lie.
+pub fn find(views: &[Turned], strips: &[Strip], placed: &[Beside]) -> Vec<On> {
+    let ends = (0..strips.len()).flat_map(|n| [0, 1].map(|side| (n, side)));
+    ends.filter_map(|(n, side)| beyond(&views[strips[n].direction], strips, placed, n, side)).collect()
+}
+
+fn beyond(view: &Turned, strips: &[Strip], placed: &[Beside], n: usize, side: usize) -> Option<On> {
+    let strip = &strips[n];
+    let end = strip.along[side];
+    let wall = shut::closed(view, strip, side, LOOK)?;
+    let along = sorted([end, wall]);
+    if (wall - end) * sign(side) < strip.width() {
+        return None;
+    }
+    let columns = view.columns(along);
+    let before = view.columns(sorted([end, wall - sign(side) * BEFORE]));
+    let [low, high] = shut::inner(strip);
+    let is_free = view.mean_blocked(columns.clone(), low, high) <= CLUTTER
+        && !barriers::among(view, strip.across, before.clone()).any()
+        && barriers::stops(view, strip.across, before).is_empty();
+    let on = Strip { along, ..strip.clone() };
+    let is_known = |m: &usize| *m != n && ragged::is_beside(&strips[*m], &on);
+    if !is_free || placed[strip.direction].touching(along, strip.across).iter().any(is_known) {
+        return None;
+    }
+    let walled = strip.across.map(|at| view.share_touched(columns.clone(), at - SIDE, at + SIDE) >= WALLED);
+    let open = match walled {
+        [true, false] => 1,
+        [false, true] => 0,
+        _ => return None,
+    };
+    let side = strip.across[open];
+    let outwards = sign(open);
+    let stands = |far: f64| {
+        let [low, high] = sorted([side + outwards * SIDE, side + outwards * far]);
+        let stands = view.some_occupied(columns.clone(), low, high);
+        stands.iter().filter(|share| **share > 0.0).count() as f64 / stands.len() as f64
+    };
+    let steps = (RECESS / view.cell) as usize;
+    let recess = (1..=steps).map(|cells| cells as f64 * view.cell).find(|&far| far > SIDE && stands(far) >= ENDED)?;
+    let across = sorted([strip.across[1 - open], side + outwards * (recess - view.cell)]);
+    Some(On {
+        way: n,
+        along: both(strip.along, along),
+        floor: Strip { along, across: both(across, strip.across), ..on },
+    })
+}
+
+/// True when a way of another direction ends on the floor, or in it.
+pub fn is_led_to(views: &[Turned], On { floor, .. }: &On, strips: &[Strip]) -> bool {
+    let view = &views[floor.direction];
+    strips.iter().filter(|strip| strip.direction != floor.direction).any(|strip| {
+        let its = &views[strip.direction];
+        strip.along.into_iter().any(|end| {
+            let [u, v] = view.place(its.to_map([end, strip.middle()]));
+            let [along, across] = [floor.along, wider(floor.across, SIDE)];
+            along[0] < u && u < along[1] && across[0] < v && v < across[1]
+        })
+    })
+}
