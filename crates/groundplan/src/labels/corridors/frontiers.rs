@@ -38,7 +38,7 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
         let all = openings::of(views, passing, &pitches, parameters);
         for way in at_ends(views, passing, &all) {
             let near = placed[way.direction].touching(way.along, way.across).into_iter();
-            if near.filter(|&n| ragged::is_beside(&ways[n], &way)).next().is_none() {
+            if is_alike(&way) && near.filter(|&n| ragged::is_beside(&ways[n], &way)).next().is_none() {
                 placed[way.direction].add(ways.len(), way.along, way.across);
                 rest.push((way.clone(), None));
                 ways.push(way);
