@@ -14,9 +14,9 @@ use std::cmp::Ordering;
 const SHARED: f64 = 0.7;
 const ALIKE: f64 = 0.7;
 const ALIKE_RAGGED: f64 = 0.5;
-/// Pieces follow one another at once, and have a side in common, where they are no further apart than this, metres; a wall is
-/// that side where they meet when it goes on for so much to either side of there.
-const AT_ONCE: f64 = 0.15;
+/// Pieces have a side in common that is no further apart than this, metres, and that is a wall where it goes on from the one to the
+/// other, and for so much along either.
+const IN_LINE: f64 = 0.15;
 const WALL: f64 = 0.5;
 /// No two are further apart than so many times as they are wide, nor than the shorter one is long.
 const APART: f64 = 3.0;
@@ -159,11 +159,7 @@ fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], least: f64, [a,
     let view = &views[one.direction];
     let [low, high] = shared(one.across, two.across);
     let (narrow, wide) = (one.width().min(two.width()), one.width().max(two.width()));
-    let alike = if one.is_ragged || two.is_ragged || gap <= AT_ONCE && are_along_a_wall(view, one, two) {
-        ALIKE_RAGGED
-    } else {
-        ALIKE
-    };
+    let alike = if one.is_ragged || two.is_ragged || are_along_a_wall(view, one, two) { ALIKE_RAGGED } else { ALIKE };
     if high - low < least.max(SHARED * narrow) || narrow < alike * wide || gap > APART * f64::midpoint(narrow, wide) {
         return false;
     }
@@ -188,12 +184,11 @@ fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], least: f64, [a,
 /// True when the pieces of a way have one side in common, and that is a wall where they meet: the floor beside it is as free as
 /// the row at its other side leaves it.
 fn are_along_a_wall(view: &Turned, one: &Strip, two: &Strip) -> bool {
-    let meet = f64::midpoint(one.along[1], two.along[0]);
-    let columns = view.columns(wider([meet; 2], WALL));
+    let columns = view.columns(wider(sorted([one.along[1], two.along[0]]), WALL));
     (0..2).any(|side| {
         let [a, b] = [one, two].map(|strip| strip.across[side]);
-        let [low, high] = wider(sorted([a, b]), AT_ONCE);
-        (a - b).abs() <= AT_ONCE
+        let [low, high] = wider(sorted([a, b]), IN_LINE);
+        (a - b).abs() <= IN_LINE
             && view.blocked_where(columns.clone(), low, high, |share| share > 0.0).count(0..columns.len())
                 == columns.len()
     })
