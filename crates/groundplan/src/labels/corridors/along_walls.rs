@@ -3,10 +3,11 @@
 
 use super::barriers;
 use super::ragged;
-use crate::ends::{both, sorted, wider};
+use crate::ends::{around, both, overlap, sorted, wider};
 use crate::labels::beside::Beside;
 use crate::labels::corridors::Strip;
 use crate::labels::junctions::shut::{self, sign};
+use crate::labels::rows::Row;
 use crate::labels::view::turned::Turned;
 
 /// The wall at its end is looked for so far, metres, and the ends of rows so far beside it.
@@ -16,6 +17,8 @@ const RECESS: f64 = 4.0;
 const BEFORE: f64 = 0.5;
 /// The floor is free but for this share.
 const CLUTTER: f64 = 0.05;
+/// Something stands in it over no more than this share of its length.
+const STANDING: f64 = 0.1;
 /// A wall stands so near to its side, metres, over so much of what it leads on; at the other side rows end over so much.
 const SIDE: f64 = 0.25;
 const WALLED: f64 = 0.8;
@@ -31,9 +34,18 @@ pub struct On {
 }
 
 /// What some ways lead on along walls; of all it is known where they lie.
-pub fn find(views: &[Turned], strips: &[Strip], placed: &[Beside]) -> Vec<On> {
+pub fn find(views: &[Turned], strips: &[Strip], placed: &[Beside], rows: &[Row]) -> Vec<On> {
     let ends = (0..strips.len()).flat_map(|n| [0, 1].map(|side| (n, side)));
-    ends.filter_map(|(n, side)| beyond(&views[strips[n].direction], strips, placed, n, side)).collect()
+    let found = ends.filter_map(|(n, side)| beyond(&views[strips[n].direction], strips, placed, n, side));
+    found.filter(|on| !rows.iter().any(|row| reaches_into(views, row, &on.floor, strips[on.way].across))).collect()
+}
+
+/// True when a row stands on what a way between two places across would lead on over.
+fn reaches_into(views: &[Turned], row: &Row, floor: &Strip, across: [f64; 2]) -> bool {
+    let (its, view) = (&views[row.direction], &views[floor.direction]);
+    let corners = its.rectangle(row.along, row.across);
+    let [u, v] = [0, 1].map(|axis| around(corners.iter().map(|&corner| view.place(corner)[axis])));
+    overlap(u, floor.along) > SIDE && overlap(v, across) > SIDE
 }
 
 fn beyond(view: &Turned, strips: &[Strip], placed: &[Beside], n: usize, side: usize) -> Option<On> {
@@ -48,6 +60,7 @@ fn beyond(view: &Turned, strips: &[Strip], placed: &[Beside], n: usize, side: us
     let before = view.columns(sorted([end, wall - sign(side) * BEFORE]));
     let [low, high] = shut::inner(strip);
     let is_free = view.mean_blocked(columns.clone(), low, high) <= CLUTTER
+        && view.share_touched(before.clone(), low, high) <= STANDING
         && !barriers::among(view, strip.across, before.clone()).any()
         && barriers::stops(view, strip.across, before).is_empty();
     let on = Strip { along, ..strip.clone() };
@@ -61,16 +74,14 @@ fn beyond(view: &Turned, strips: &[Strip], placed: &[Beside], n: usize, side: us
         [false, true] => 0,
         _ => return None,
     };
-    let side = strip.across[open];
-    let outwards = sign(open);
+    let (edge, outwards) = (strip.across[open], sign(open));
     let stands = |far: f64| {
-        let [low, high] = sorted([side + outwards * SIDE, side + outwards * far]);
-        let stands = view.some_occupied(columns.clone(), low, high);
-        stands.iter().filter(|share| **share > 0.0).count() as f64 / stands.len() as f64
+        let [low, high] = sorted([edge + outwards * SIDE, edge + outwards * far]);
+        view.share_touched(columns.clone(), low, high)
     };
     let steps = (RECESS / view.cell) as usize;
     let recess = (1..=steps).map(|cells| cells as f64 * view.cell).find(|&far| far > SIDE && stands(far) >= ENDED)?;
-    let across = sorted([strip.across[1 - open], side + outwards * (recess - view.cell)]);
+    let across = sorted([strip.across[1 - open], edge + outwards * (recess - view.cell)]);
     Some(On {
         way: n,
         along: both(strip.along, along),

@@ -30,7 +30,7 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
     let is_along_rows = |way: &Strip| rows.iter().any(|row| row.direction == way.direction);
     // What a way leads on along a wall is one where another opens into that.
     let mut rest: Vec<(Strip, Option<On>)> =
-        along_walls::find(views, strips, &placed).into_iter().map(|on| (on.floor.clone(), Some(on))).collect();
+        along_walls::find(views, strips, &placed, rows).into_iter().map(|on| (on.floor.clone(), Some(on))).collect();
     rest.extend(strips.iter().rev().map(|strip| (strip.clone(), None)));
     while let Some((passing, on)) = rest.pop() {
         let passing = &passing;

@@ -1,7 +1,7 @@
 //! Pieces of one way: in line, and with nothing in the way from one to the next.
 
 use super::barriers;
-use crate::ends::{around, holds, overlap, shared, sorted, wider};
+use crate::ends::{around, holds, overlap, shared, sorted};
 use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::{ASKEW, Strip};
 use crate::labels::view::turned::Turned;
@@ -14,10 +14,6 @@ use std::cmp::Ordering;
 const SHARED: f64 = 0.7;
 const ALIKE: f64 = 0.7;
 const ALIKE_RAGGED: f64 = 0.5;
-/// Pieces have a side in common that is no further apart than this, metres, and that is a wall where it goes on from the one to the
-/// other, and for so much along either.
-const IN_LINE: f64 = 0.15;
-const WALL: f64 = 0.5;
 /// No two are further apart than so many times as they are wide, nor than the shorter one is long.
 const APART: f64 = 3.0;
 /// Between them the floor is free but for this share.
@@ -156,10 +152,9 @@ fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], least: f64, [a,
     if a == b || one.direction != two.direction || gap < -1e-6 || gap > one.length().min(two.length()) {
         return false;
     }
-    let view = &views[one.direction];
     let [low, high] = shared(one.across, two.across);
     let (narrow, wide) = (one.width().min(two.width()), one.width().max(two.width()));
-    let alike = if one.is_ragged || two.is_ragged || are_along_a_wall(view, one, two) { ALIKE_RAGGED } else { ALIKE };
+    let alike = if one.is_ragged || two.is_ragged { ALIKE_RAGGED } else { ALIKE };
     if high - low < least.max(SHARED * narrow) || narrow < alike * wide || gap > APART * f64::midpoint(narrow, wide) {
         return false;
     }
@@ -167,6 +162,7 @@ fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], least: f64, [a,
     if placed[one.direction].touching(between, [low, high]).into_iter().any(|n| is_between(&strips[n])) {
         return false;
     }
+    let view = &views[one.direction];
     let margin = MARGIN * (high - low);
     let [from, to] = between.map(|u| view.column(u));
     let columns = from.saturating_sub(1)..to + 1;
@@ -179,17 +175,4 @@ fn is_one(views: &[Turned], strips: &[Strip], placed: &[Beside], least: f64, [a,
     (is_free() || is_unseen())
         && !barriers::among(view, [low, high], columns.clone()).any()
         && barriers::stops(view, [low, high], columns).is_empty()
-}
-
-/// True when the pieces of a way have one side in common, and that is a wall where they meet: the floor beside it is as free as
-/// the row at its other side leaves it.
-fn are_along_a_wall(view: &Turned, one: &Strip, two: &Strip) -> bool {
-    let columns = view.columns(wider(sorted([one.along[1], two.along[0]]), WALL));
-    (0..2).any(|side| {
-        let [a, b] = [one, two].map(|strip| strip.across[side]);
-        let [low, high] = wider(sorted([a, b]), IN_LINE);
-        (a - b).abs() <= IN_LINE
-            && view.blocked_where(columns.clone(), low, high, |share| share > 0.0).count(0..columns.len())
-                == columns.len()
-    })
 }

@@ -1,6 +1,6 @@
 //! Ways between two racks that face each other: such a way is as long as both, be it seen there or not.
 
-use crate::ends::{holds, overlap, shared, wider};
+use crate::ends::{around, holds, overlap, shared, wider};
 use crate::labels::beside::placed;
 use crate::labels::corridors::Strip;
 use crate::labels::corridors::barriers;
@@ -9,6 +9,8 @@ use crate::labels::view::turned::Turned;
 
 /// So much of what was not seen may be taken.
 const CLUTTER: f64 = 0.05;
+/// What was not seen between two pieces of a way is no longer than this share of the longer one.
+const APART: f64 = 0.3;
 
 /// The strips, each from where to where racks stand on both its sides, where nothing stands between these and no other
 /// strip is.
@@ -22,8 +24,16 @@ pub fn whole(views: &[Turned], strips: &[Strip], racks: &[Row]) -> Vec<Strip> {
             let columns = view.columns([from, to]);
             let taken = view.some_occupied(columns.clone(), strip.across[0], strip.across[1]);
             let others = known[strip.direction].touching([from, to], strip.across);
+            // What is too short for a way by itself and in line with it is of it where little between them was not seen.
+            let is_piece = |m: usize| {
+                let other = &strips[m];
+                let apart = (other.along[0] - strip.along[1]).max(strip.along[0] - other.along[1]);
+                is_in_line(strip, other) && other.is_short() && apart <= APART * strip.length()
+            };
             let is_other = |m: usize| {
-                overlap(strips[m].along, [from, to]) > view.cell && overlap(strips[m].across, strip.across) > 0.0
+                overlap(strips[m].along, [from, to]) > view.cell
+                    && overlap(strips[m].across, strip.across) > 0.0
+                    && !is_piece(m)
             };
             taken.iter().sum::<f64>() <= CLUTTER * taken.len() as f64
                 && !others.into_iter().any(|m| m != n && is_other(m))
@@ -44,11 +54,32 @@ pub fn whole(views: &[Turned], strips: &[Strip], racks: &[Row]) -> Vec<Strip> {
                 ([_, high], _) => [strip.along[1], high],
             };
             if on[1] - on[0] > SAME && is_free(on) {
-                whole.along[end] = on[end];
+                let pieces = known[strip.direction].touching(on, strip.across).into_iter();
+                let pieces = pieces.filter(|&m| m != n && is_in_line(strip, &strips[m]));
+                whole.along[end] = around(pieces.flat_map(|m| strips[m].along).chain(on))[end];
                 whole.stops[end] = true;
             }
         }
         whole
     };
-    strips.iter().enumerate().map(as_long).collect()
+    let all: Vec<Strip> = strips.iter().enumerate().map(as_long).collect();
+    let is_part = |n: usize| {
+        if !strips[n].is_short() {
+            return false;
+        }
+        let longer = |m: usize| m != n && all[m] != strips[m];
+        let near = known[strips[n].direction].touching([f64::NEG_INFINITY, f64::INFINITY], strips[n].across);
+        near.into_iter().any(|m| {
+            longer(m) && is_in_line(&strips[m], &strips[n]) && is_within(strips[n].along, wider(all[m].along, SAME))
+        })
+    };
+    (0..all.len()).filter(|&n| !is_part(n)).map(|n| all[n].clone()).collect()
+}
+
+fn is_in_line(one: &Strip, other: &Strip) -> bool {
+    (0..2).all(|side| (one.across[side] - other.across[side]).abs() <= SAME)
+}
+
+fn is_within(one: [f64; 2], other: [f64; 2]) -> bool {
+    other[0] <= one[0] && one[1] <= other[1]
 }
