@@ -3,10 +3,10 @@
 use crate::grid::{Frame, whole};
 use std::ops::Range;
 
-/// Places this near to a line lie on it, metres, or at least so many pixels.
+/// In metres, or at least so many pixels.
 const NEAR: (f64, f64) = (0.12, 2.0);
 
-/// Edge pixels this near to a line lie on it, metres.
+/// How near to a line edge pixels lie on it, metres.
 pub fn near(frame: &Frame) -> f64 {
     NEAR.0.max(NEAR.1 * frame.resolution)
 }

@@ -3,7 +3,7 @@
 
 use super::barriers;
 use super::ragged;
-use crate::ends::{around, both, overlap, sorted, wider};
+use crate::ends::{around, both, holds, overlap, sorted, wider};
 use crate::labels::beside::Beside;
 use crate::labels::corridors::Strip;
 use crate::labels::junctions::shut::{self, sign};
@@ -89,15 +89,17 @@ fn beyond(view: &Turned, strips: &[Strip], placed: &[Beside], n: usize, side: us
     })
 }
 
-/// True when a way of another direction ends on the floor, or in it.
-pub fn is_led_to(views: &[Turned], On { floor, .. }: &On, strips: &[Strip]) -> bool {
+/// True when a way of another direction ends on the floor, and not where that begins; of all it is known where they lie.
+pub fn is_led_to(views: &[Turned], On { floor, .. }: &On, strips: &[Strip], placed: &[Beside]) -> bool {
     let view = &views[floor.direction];
-    strips.iter().filter(|strip| strip.direction != floor.direction).any(|strip| {
-        let its = &views[strip.direction];
-        strip.along.into_iter().any(|end| {
-            let [u, v] = view.place(its.to_map([end, strip.middle()]));
-            let [along, across] = [floor.along, wider(floor.across, SIDE)];
-            along[0] < u && u < along[1] && across[0] < v && v < across[1]
+    let corners = view.rectangle(floor.along, wider(floor.across, SIDE));
+    views.iter().filter(|its| its.direction != floor.direction).any(|its| {
+        let [along, across] = [0, 1].map(|axis| around(corners.iter().map(|&corner| its.place(corner)[axis])));
+        placed[its.direction].touching(along, across).into_iter().any(|n| {
+            strips[n].along.into_iter().any(|end| {
+                let [u, v] = view.place(its.to_map([end, strips[n].middle()]));
+                holds(wider(floor.along, -SIDE), u) && holds(wider(floor.across, SIDE), v)
+            })
         })
     })
 }

@@ -78,9 +78,7 @@ pub fn with(
                 })
             })
         };
-        let is_leg = |opening: &Opening| {
-            !opening.is_as_bay && opening.held.iter().all(|held| *held >= LENGTH[0]) && is_new(&opening.way)
-        };
+        let is_leg = |opening: &Opening| opening.held.iter().all(|held| *held >= LENGTH[0]) && is_new(&opening.way);
         for Opening { way, middle, .. } in openings::of(views, strip, &pitches, parameters).into_iter().filter(is_leg) {
             let side = usize::from(middle < way.along[0]);
             if let Some(led) = bend(&way, side) {

@@ -37,7 +37,8 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
         let placed = placed(views, strips.iter().map(Strip::place));
         let meetings = junctions::find(views, &strips, threads);
         let met = of_each(&meetings, strips.len());
-        let is_shut = |n: usize| (0..2).all(|side| shut::is_shut(&views[strips[n].direction], &strips[n], side));
+        let view = |n: usize| &views[strips[n].direction];
+        let is_shut = |n: usize| (0..2).all(|side| shut::is_shut(view(n), &strips[n], side));
         let goes_on =
             |n: usize, metres: f64, (widths, least): (f64, f64)| metres >= least.max(widths * strips[n].width());
         let leads = |n: usize| {
@@ -46,11 +47,10 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
                 let free_end = usize::from(two > one);
                 // It has been drawn as far as its sides were seen, which may be where the junction begins: what leads on
                 // there is drawn on to its middle later, a room with jambs or a wall is not.
-                let is_parted = || (0..2).any(|side| shut::is_parted(&views[strips[n].direction], &strips[n], side));
+                let is_parted = || (0..2).any(|side| shut::is_parted(view(n), &strips[n], side));
                 let within = if is_parted() { reach(&meetings[m], n) } else { 0.0 };
                 let most = one.max(two).min(strips[n].length() - within);
-                let ends_unseen =
-                    || strips[n].is_ragged && shut::is_unseen(&views[strips[n].direction], &strips[n], free_end);
+                let ends_unseen = || strips[n].is_ragged && shut::is_unseen(view(n), &strips[n], free_end);
                 let leads_on = goes_on(n, most, NICHE)
                     || goes_on(n, one + two, NICHES)
                     || goes_on(n, most, UNSEEN) && ends_unseen();
@@ -71,10 +71,10 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
             let is_aisle = || is_one_of(ALONE.0, Beyond::Near) || is_one_of(NICHE.0, Beyond::Rack);
             match met[n].len() {
                 0 | 1 if rows::is_within_row(&strips, &placed, n) => false,
-                0 if is_shut(n) && sided::is_within_outline(&views[strips[n].direction], &strips, &placed, n) => false,
+                0 if is_shut(n) && sided::is_within_outline(view(n), &strips, &placed, n) => false,
                 0 if is_shut(n) => {
-                    let is_sided = || sided::is_sided_but_for_bays(&views[strips[n].direction], &strips[n]);
-                    let is_at_row = || sided::is_at_row(&views[strips[n].direction], &strips, &placed, n);
+                    let is_sided = || sided::is_sided_but_for_bays(view(n), &strips[n]);
+                    let is_at_row = || sided::is_at_row(view(n), &strips, &placed, n);
                     strips[n].length() >= SHUT * strips[n].width()
                         && (is_one_of_many(Beyond::Near) || is_sided() || is_at_row())
                 }

@@ -1,10 +1,12 @@
-//! Ways that end at a frontier, between what was seen and what was not (Yamauchi 1997), before they are long enough for one:
-//! past the ends of two rows, or through a row in line with a way, a robot saw as far as its sensor reaches, and went on.
+//! Ways of which little more was seen than where they open into others. They end at a frontier, between what was seen and what was
+//! not (Yamauchi 1997), before they are long enough for a way: past the ends of two rows, or through a row in line with a way, a
+//! robot saw as far as its sensor reaches, and went on. And ways before a wall, or on along one, into which such ways may open.
 
 use super::along_walls::{self, On};
+use super::before_walls;
 use super::openings::{self, Opening};
 use super::ragged;
-use crate::ends::{around, both, holds, overlap, shared, sorted, wider};
+use crate::ends::{around, both, holds, shared, wider};
 use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::Strip;
 use crate::labels::junctions::shut;
@@ -21,41 +23,40 @@ const ROW: f64 = 0.8;
 /// What is in line with another has its sides no farther than this from that one's, metres.
 const IN_LINE: f64 = 0.5;
 
-/// The ways with those that end at frontiers and are as wide as others; none where there are no such.
+/// The ways with those that end at frontiers or lead before walls and are as wide as others, and with what they lead on along walls;
+/// none where there is no such.
 pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Parameters) -> Option<Vec<Strip>> {
     let mut ways = strips.to_vec();
     let mut placed = placed(views, strips.iter().map(Strip::place));
     let pitches = openings::pitches(views, rows);
     let is_alike = |way: &Strip| strips.iter().any(|one| one.direction == way.direction && one.is_as_wide(way));
     let is_along_rows = |way: &Strip| rows.iter().any(|row| row.direction == way.direction);
-    // What a way leads on along a wall is one where another opens into that.
+    // The last is asked first: each way, what leads before the wall at its end, and when all are known what ways lead on over along
+    // walls, which they do where others open into that.
     let mut rest: Vec<(Strip, Option<On>)> =
         along_walls::find(views, strips, &placed, rows).into_iter().map(|on| (on.floor.clone(), Some(on))).collect();
     rest.extend(strips.iter().rev().map(|strip| (strip.clone(), None)));
     while let Some((passing, on)) = rest.pop() {
         let passing = &passing;
-        let mut leads_on = on.as_ref().is_some_and(|on| along_walls::is_led_to(views, on, &ways));
-        let all = openings::of(views, passing, &pitches, parameters);
-        for way in at_ends(views, passing, &all) {
-            let near = placed[way.direction].touching(way.along, way.across).into_iter();
-            if is_alike(&way) && near.filter(|&n| ragged::is_beside(&ways[n], &way)).next().is_none() {
+        let found = openings::of(views, passing, &pitches, parameters);
+        for way in before_walls::find(views, passing, found.iter().filter(|opening| is_held(opening))) {
+            let is_known = |n: usize| ragged::is_beside(&ways[n], &way);
+            if is_alike(&way) && !placed[way.direction].touching(way.along, way.across).into_iter().any(is_known) {
                 placed[way.direction].add(ways.len(), way.along, way.across);
                 rest.push((way.clone(), None));
                 ways.push(way);
             }
         }
-        let found = all.into_iter();
+        let mut leads_on = on.as_ref().is_some_and(|on| along_walls::is_led_to(views, on, &ways, &placed));
         let is_way = |opening: &Opening| {
             opening.is_frontier
                 && is_alike(&opening.way)
-                && (!opening.is_as_bay || is_led_to(views, &opening.way, &ways, &placed))
                 && (is_held(opening)
                     || is_between_rows(opening)
                         && (is_along_rows(&opening.way) || is_led_to(views, &opening.way, &ways, &placed))
                         && !is_through_another(views, &opening.way, passing, &ways, &placed))
         };
-        for Opening { mut way, middle, .. } in found.filter(is_way).collect::<Vec<_>>() {
-            leads_on = true;
+        for Opening { mut way, middle, .. } in found.into_iter().filter(is_way).collect::<Vec<_>>() {
             way.along = both(way.along, [middle; 2]);
             let reaching = Strip { along: wider(way.along, passing.width() / 2.0), ..way.clone() };
             let near = placed[way.direction].touching(reaching.along, way.across).into_iter();
@@ -72,46 +73,15 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
                 }
                 _ => continue,
             };
+            leads_on = true;
             placed[ways[n].direction].add(n, ways[n].along, ways[n].across);
         }
-        if let Some(on) = on.filter(|_| leads_on) {
-            ways[on.way].along = both(ways[on.way].along, on.along);
-            placed[passing.direction].add(on.way, ways[on.way].along, ways[on.way].across);
+        if let Some(On { way, along, .. }) = on.filter(|_| leads_on) {
+            ways[way].along = both(ways[way].along, along);
+            placed[passing.direction].add(way, ways[way].along, ways[way].across);
         }
     }
     (ways != strips).then_some(ways)
-}
-
-/// What leads to both sides at an end of a way, before one wall: there what opens on the one side is in line with what opens
-/// on the other, and both lie between the wall and the end of a row.
-fn at_ends(views: &[Turned], passing: &Strip, openings: &[Opening]) -> Vec<Strip> {
-    let view = &views[passing.direction];
-    // Which of its ends lies within what opens, or at its side, and a wall there closes it.
-    let is_at_end = |way: &Strip| {
-        let at = sorted(way.across.map(|across| view.crossing(&views[way.direction], passing.middle(), across)[1]));
-        (0..2).any(|side| {
-            holds(wider(at, IN_LINE), passing.along[side]) && {
-                let outer = at[side];
-                shut::closed(view, passing, side, (outer - passing.along[side]).abs() + IN_LINE).is_some()
-            }
-        })
-    };
-    let mut found = Vec::new();
-    for (n, one) in openings.iter().enumerate() {
-        for two in &openings[n + 1..] {
-            let is_one = is_in_line(&one.way, &two.way) && overlap(one.way.along, two.way.along) <= 0.0;
-            if is_one
-                && [one, two].iter().all(|opening| !opening.is_as_bay && is_held(opening) && is_at_end(&opening.way))
-            {
-                found.push(Strip {
-                    along: both(one.way.along, two.way.along),
-                    across: shared(one.way.across, two.way.across),
-                    ..one.way.clone()
-                });
-            }
-        }
-    }
-    found
 }
 
 /// True when what opens lies between two sides of which one may be no more than the end of a row.
@@ -150,6 +120,6 @@ fn is_through_another(views: &[Turned], way: &Strip, passing: &Strip, ways: &[St
 }
 
 /// True when one way lies in line with another.
-fn is_in_line(one: &Strip, other: &Strip) -> bool {
+pub fn is_in_line(one: &Strip, other: &Strip) -> bool {
     one.direction == other.direction && (0..2).all(|side| (one.across[side] - other.across[side]).abs() <= IN_LINE)
 }

@@ -8,6 +8,7 @@
 pub(super) mod along_walls;
 pub(super) mod askew;
 pub(super) mod barriers;
+pub(super) mod before_walls;
 pub(super) mod bends;
 pub(super) mod columns;
 pub(super) mod connected;

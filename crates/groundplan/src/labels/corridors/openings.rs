@@ -45,8 +45,6 @@ pub struct Opening {
     pub stands: [f64; 2],
     /// It ends at a frontier: nothing stands there.
     pub is_frontier: bool,
-    /// It is no wider than a bay of a row along the way past it.
-    pub is_as_bay: bool,
 }
 
 /// From post to post along each direction, metres, where rows run along it: other than these nothing has bays.
@@ -56,7 +54,8 @@ pub fn pitches(views: &[Turned], rows: &[Row]) -> Vec<Option<f64>> {
     views.iter().map(|view| view.pitch.filter(|pitch| longest(view) >= BAYS * pitch)).collect()
 }
 
-/// What opens into a way from one side or the other, square to it, where these are the pitches of all directions.
+/// What opens into a way from one side or the other, square to it, where these are the pitches of all directions. Of what may be one
+/// opening, whose middle was not seen, the parts come before the whole.
 pub fn of(views: &[Turned], way: &Strip, pitches: &[Option<f64>], parameters: &Parameters) -> Vec<Opening> {
     let (view, pitch) = (&views[way.direction], pitches[way.direction]);
     let Some(other) = square_to(views, way.direction) else { return Vec::new() };
@@ -156,10 +155,11 @@ impl Passing<'_> {
         depths
     }
 
-    /// So many columns are as wide as a way.
+    /// So many columns are as wide as a way, and wider than a bay of a row along the way past them.
     fn is_wide_as_way(&self, columns: usize) -> bool {
-        let least = self.parameters.labels_min_width.max(WIDTH.0);
-        (least..=self.parameters.labels_max_width).contains(&self.metres(columns))
+        let width = self.metres(columns);
+        (self.parameters.labels_min_width.max(WIDTH.0)..=self.parameters.labels_max_width).contains(&width)
+            && self.pitch.is_none_or(|pitch| width > BAY * pitch)
     }
 
     /// True when at either side of some columns, of which the way's are given, a row ends, be its first bay empty, or the way
@@ -179,13 +179,14 @@ impl Passing<'_> {
 
     /// What opens through some columns, where it is deep enough.
     fn opening(&self, columns: Range<usize>, depths: &[usize]) -> Option<Opening> {
-        let deep: Vec<usize> = depths.iter().copied().filter(|depth| self.is_deep(*depth)).collect();
-        let cells = median(&deep);
+        let deep: Vec<(usize, usize)> =
+            columns.clone().zip(depths.iter().copied()).filter(|(_, depth)| self.is_deep(*depth)).collect();
+        let cells = median(&deep.iter().map(|(_, depth)| *depth).collect::<Vec<_>>());
         let (depth, width) = (self.metres(cells), self.metres(columns.len()));
         if depth < DEEP.1 * width {
             return None;
         }
-        let shut = columns.clone().zip(depths).filter(|&(column, depth)| self.stands(column, *depth)).count();
+        let shut = deep.iter().filter(|(column, depth)| self.stands(*column, *depth)).count();
         let sides = [columns.start, columns.end].map(|column| self.view.along(column));
         let end = self.beyond(cells)[usize::from(self.side == 0)];
         let corners = [[sides[0], self.way.across[self.side]], [sides[1], end]];
@@ -198,8 +199,7 @@ impl Passing<'_> {
             middle,
             held,
             stands,
-            is_frontier: cells < self.most() && shut as f64 <= SHUT * depths.len() as f64,
-            is_as_bay: self.pitch.is_some_and(|pitch| width <= BAY * pitch),
+            is_frontier: cells < self.most() && shut as f64 <= SHUT * deep.len() as f64,
         })
     }
 

@@ -38,8 +38,9 @@ const FLOOR: f64 = 0.5;
 /// A thin wall stands in so many columns at most, where a border of cells parts it.
 const THIN: i64 = 2;
 
-/// True when a corridor goes on beyond a junction by so much that it leads on: as far as its sides were seen, or to the wall that
-/// ends it where one of them goes on to that over more than a slit through which no robot comes.
+/// True when a corridor goes on beyond a junction by so much that it leads on: as far as its sides were seen, which is less where it
+/// ends at a frontier, or to the wall that ends it where one of them goes on to that over more than a slit through which no robot
+/// comes.
 pub fn goes_on(view: &Turned, strip: &Strip, side: usize, beyond: f64) -> bool {
     let least = ARM.1 * strip.width();
     let reaches = |wall: f64| {

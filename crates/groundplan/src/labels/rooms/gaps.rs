@@ -69,7 +69,7 @@ pub fn along_lines(evidence: &Evidence, raster: &Raster) -> Vec<Bar> {
     let keyed = evidence.recall.patches(evidence.grid, evidence.threads).map(|seen| Keyed {
         seen,
         free: Patches::of_bits(&raster.free, [raster.width, raster.height], evidence.threads),
-        beside: on_line(frame) / raster.side as f64
+        beside: near_line(frame) / raster.side as f64
             + raster.pixels(gradients::reach_across(frame.resolution, evidence.parameters)),
     });
     let along = |direction: usize| {
@@ -99,7 +99,7 @@ pub fn along_lines(evidence: &Evidence, raster: &Raster) -> Vec<Bar> {
 fn lined(evidence: &Evidence, raster: &Raster, angle: f64, offsets: &[f64]) -> Vec<Vec<i64>> {
     let (cos, sin) = (libm::cos(angle), libm::sin(angle));
     let tolerance = evidence.parameters.radiograms_tolerance_deg.to_radians();
-    let lines = OnLine::new(offsets, on_line(&evidence.grid.frame));
+    let lines = OnLine::new(offsets, near_line(&evidence.grid.frame));
     let mut steps: Vec<Vec<i64>> = vec![Vec::new(); offsets.len()];
     evidence.gradients.iter().for_each(|(pixel, along, _)| {
         if angle_between(f64::from(along), angle) > tolerance {
@@ -122,7 +122,7 @@ fn lined(evidence: &Evidence, raster: &Raster, angle: f64, offsets: &[f64]) -> V
 }
 
 /// Edge pixels this near to a line lie on it, pixels.
-fn on_line(frame: &Frame) -> f64 {
+fn near_line(frame: &Frame) -> f64 {
     on_line::near(frame) / frame.resolution
 }
 
