@@ -6,6 +6,7 @@ use crate::labels::corridors::Strip;
 use crate::labels::corridors::barriers;
 use crate::labels::rows::{Row, SAME};
 use crate::labels::view::turned::Turned;
+use std::cmp::Ordering;
 
 /// So much of what was not seen may be taken.
 const CLUTTER: f64 = 0.05;
@@ -63,15 +64,16 @@ pub fn whole(views: &[Turned], strips: &[Strip], racks: &[Row]) -> Vec<Strip> {
         whole
     };
     let all: Vec<Strip> = strips.iter().enumerate().map(as_long).collect();
+    // Of pieces that are as long as one another then one is left.
     let is_part = |n: usize| {
-        if !strips[n].is_short() {
-            return false;
-        }
-        let longer = |m: usize| m != n && all[m] != strips[m];
+        let is_longer = |m: usize| match all[m].length().total_cmp(&all[n].length()) {
+            Ordering::Equal => m < n,
+            order => order.is_gt(),
+        };
+        let is_whole = |m: usize| m != n && all[m] != strips[m] && is_longer(m) && is_in_line(&all[m], &all[n]);
         let near = known[strips[n].direction].touching([f64::NEG_INFINITY, f64::INFINITY], strips[n].across);
-        near.into_iter().any(|m| {
-            longer(m) && is_in_line(&strips[m], &strips[n]) && is_within(strips[n].along, wider(all[m].along, SAME))
-        })
+        strips[n].is_short()
+            && near.into_iter().any(|m| is_whole(m) && is_within(strips[n].along, wider(all[m].along, SAME)))
     };
     (0..all.len()).filter(|&n| !is_part(n)).map(|n| all[n].clone()).collect()
 }
