@@ -9,6 +9,7 @@ use crate::labels::corridors::Strip;
 use crate::labels::junctions::shut::{self, sign};
 use crate::labels::rows::Row;
 use crate::labels::view::turned::Turned;
+use std::ops::Range;
 
 /// The wall at its end is looked for so far, metres, and the ends of rows so far beside it.
 const LOOK: f64 = 60.0;
@@ -75,18 +76,27 @@ fn beyond(view: &Turned, strips: &[Strip], placed: &[Beside], n: usize, side: us
         _ => return None,
     };
     let (edge, outwards) = (strip.across[open], sign(open));
-    let stands = |far: f64| {
-        let [low, high] = sorted([edge + outwards * SIDE, edge + outwards * far]);
-        view.share_touched(columns.clone(), low, high)
-    };
-    let steps = (RECESS / view.cell) as usize;
-    let recess = (1..=steps).map(|cells| cells as f64 * view.cell).find(|&far| far > SIDE && stands(far) >= ENDED)?;
+    let recess = recess(view, columns, edge, outwards)?;
     let across = sorted([strip.across[1 - open], edge + outwards * (recess - view.cell)]);
     Some(On {
         way: n,
         along: both(strip.along, along),
         floor: Strip { along, across: both(across, strip.across), ..on },
     })
+}
+
+/// How far from a side the first rows end, over a share of some columns.
+fn recess(view: &Turned, columns: Range<usize>, edge: f64, outwards: f64) -> Option<f64> {
+    let mut ended = vec![false; columns.len()];
+    let places = (0..(RECESS / view.cell) as usize).map(|cells| [cells, cells + 1].map(|n| n as f64 * view.cell));
+    let mut places = places.filter(|[_, far]| *far > SIDE);
+    let found = places.find(|&[near, far]| {
+        let [low, high] = sorted([near.max(SIDE), far].map(|metres| edge + outwards * metres));
+        let stands = view.some_occupied(columns.clone(), low, high);
+        ended.iter_mut().zip(stands).for_each(|(ended, share)| *ended |= share > 0.0);
+        ended.iter().filter(|ended| **ended).count() as f64 >= ENDED * columns.len() as f64
+    });
+    found.map(|[_, far]| far)
 }
 
 /// True when a way of another direction ends on the floor, and not where that begins; of all it is known where they lie.

@@ -1,7 +1,7 @@
 //! Ways before a wall that are known by the one that ends there: what opens to its one side is in line with what opens to the other,
 //! and of the aisles beside it, to which they lead, not much was seen.
 
-use super::frontiers::is_in_line;
+use super::frontiers::IN_LINE;
 use super::openings::Opening;
 use crate::ends::{both, holds, overlap, shared, sorted, wider};
 use crate::labels::corridors::Strip;
@@ -16,7 +16,7 @@ pub fn find<'a>(views: &[Turned], passing: &Strip, openings: impl Iterator<Item 
     let at_ends: Vec<&Strip> =
         openings.map(|opening| &opening.way).filter(|way| is_at_end(views, passing, way)).collect();
     let pairs = at_ends.iter().enumerate().flat_map(|(n, one)| at_ends[n + 1..].iter().map(move |two| (*one, *two)));
-    let facing = pairs.filter(|(one, two)| is_in_line(one, two) && overlap(one.along, two.along) <= 0.0);
+    let facing = pairs.filter(|(one, two)| one.is_in_line(two, IN_LINE) && overlap(one.along, two.along) <= 0.0);
     let whole = |(one, two): (&Strip, &Strip)| Strip {
         along: both(one.along, two.along),
         across: shared(one.across, two.across),

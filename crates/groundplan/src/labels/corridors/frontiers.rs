@@ -2,13 +2,13 @@
 //! not (Yamauchi 1997), before they are long enough for a way: past the ends of two rows, or through a row in line with a way, a
 //! robot saw as far as its sensor reaches, and went on. And ways before a wall, or on along one, into which such ways may open.
 
-use super::along_walls::{self, On};
+use super::along_walls;
 use super::before_walls;
 use super::openings::{self, Opening};
 use super::ragged;
 use crate::ends::{around, both, holds, shared, wider};
 use crate::labels::beside::{Beside, placed};
-use crate::labels::corridors::Strip;
+use crate::labels::corridors::{Strip, UNTOLD};
 use crate::labels::junctions::shut;
 use crate::labels::rows::Row;
 use crate::labels::view::turned::Turned;
@@ -21,67 +21,133 @@ const HELD_METRES: [f64; 2] = [0.5, 2.0];
 /// each of which something stands: walls beside a gate are not so deep.
 const ROW: f64 = 0.8;
 /// What is in line with another has its sides no farther than this from that one's, metres.
-const IN_LINE: f64 = 0.5;
+pub const IN_LINE: f64 = 0.5;
 
 /// The ways with those that end at frontiers or lead before walls and are as wide as others, and with what they lead on along walls;
 /// none where there is no such.
 pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Parameters) -> Option<Vec<Strip>> {
-    let mut ways = strips.to_vec();
-    let mut placed = placed(views, strips.iter().map(Strip::place));
     let pitches = openings::pitches(views, rows);
-    let is_alike = |way: &Strip| strips.iter().any(|one| one.direction == way.direction && one.is_as_wide(way));
-    let is_along_rows = |way: &Strip| rows.iter().any(|row| row.direction == way.direction);
-    // The last is asked first: each way, what leads before the wall at its end, and when all are known what ways lead on over along
-    // walls, which they do where others open into that.
-    let mut rest: Vec<(Strip, Option<On>)> =
-        along_walls::find(views, strips, &placed, rows).into_iter().map(|on| (on.floor.clone(), Some(on))).collect();
-    rest.extend(strips.iter().rev().map(|strip| (strip.clone(), None)));
-    while let Some((passing, on)) = rest.pop() {
-        let passing = &passing;
-        let found = openings::of(views, passing, &pitches, parameters);
-        for way in before_walls::find(views, passing, found.iter().filter(|opening| is_held(opening))) {
-            let is_known = |n: usize| ragged::is_beside(&ways[n], &way);
-            if is_alike(&way) && !placed[way.direction].touching(way.along, way.across).into_iter().any(is_known) {
-                placed[way.direction].add(ways.len(), way.along, way.across);
-                rest.push((way.clone(), None));
-                ways.push(way);
-            }
-        }
-        let mut leads_on = on.as_ref().is_some_and(|on| along_walls::is_led_to(views, on, &ways, &placed));
-        let is_way = |opening: &Opening| {
-            opening.is_frontier
-                && is_alike(&opening.way)
-                && (is_held(opening)
-                    || is_between_rows(opening)
-                        && (is_along_rows(&opening.way) || is_led_to(views, &opening.way, &ways, &placed))
-                        && !is_through_another(views, &opening.way, passing, &ways, &placed))
-        };
-        for Opening { mut way, middle, .. } in found.into_iter().filter(is_way).collect::<Vec<_>>() {
-            way.along = both(way.along, [middle; 2]);
-            let reaching = Strip { along: wider(way.along, passing.width() / 2.0), ..way.clone() };
-            let near = placed[way.direction].touching(reaching.along, way.across).into_iter();
-            let near = near.filter(|&n| ragged::is_beside(&ways[n], &reaching));
-            let n = match near.collect::<Vec<usize>>()[..] {
-                [] => {
-                    ways.push(way);
-                    ways.len() - 1
-                }
-                // Another one ends there, in line.
-                [n] if is_in_line(&ways[n], &way) => {
-                    ways[n].along = both(ways[n].along, way.along);
-                    n
-                }
-                _ => continue,
-            };
-            leads_on = true;
-            placed[ways[n].direction].add(n, ways[n].along, ways[n].across);
-        }
-        if let Some(On { way, along, .. }) = on.filter(|_| leads_on) {
-            ways[way].along = both(ways[way].along, along);
-            placed[passing.direction].add(way, ways[way].along, ways[way].across);
+    let openings = |passing: &Strip| openings::of(views, passing, &pitches, parameters);
+    let mut known =
+        Known { views, strips, rows, ways: strips.to_vec(), placed: placed(views, strips.iter().map(Strip::place)) };
+    for strip in strips {
+        let mut rest = vec![strip.clone()];
+        while let Some(passing) = rest.pop() {
+            let found = openings(&passing);
+            rest.extend(known.add_before_walls(&passing, &found));
+            known.add_at_frontiers(&passing, found);
         }
     }
-    (ways != strips).then_some(ways)
+    // When all are known: ways lead on where others open into that.
+    for on in along_walls::find(views, &known.ways, &known.placed, rows) {
+        let is_opened_into = known.add_at_frontiers(&on.floor, openings(&on.floor));
+        if is_opened_into || along_walls::is_led_to(views, &on, &known.ways, &known.placed) {
+            known.lead_on(on.way, on.along);
+        }
+    }
+    (known.ways != strips).then_some(known.ways)
+}
+
+/// What ways are known, and of all where they lie; and which there were before.
+struct Known<'a> {
+    views: &'a [Turned],
+    strips: &'a [Strip],
+    rows: &'a [Row],
+    ways: Vec<Strip>,
+    placed: Vec<Beside>,
+}
+
+impl Known<'_> {
+    fn add(&mut self, way: Strip) {
+        self.placed[way.direction].add(self.ways.len(), way.along, way.across);
+        self.ways.push(way);
+    }
+
+    fn lead_on(&mut self, n: usize, along: [f64; 2]) {
+        let way = &mut self.ways[n];
+        let long = both(way.along, along);
+        for side in (0..2).filter(|&side| long[side] != way.along[side]) {
+            (way.stops[side], way.held[side]) = (false, UNTOLD[side]);
+        }
+        way.along = long;
+        self.placed[way.direction].add(n, way.along, way.across);
+    }
+
+    /// Those known that lie beside a way, or over it.
+    fn beside(&self, way: &Strip) -> Vec<usize> {
+        let near = self.placed[way.direction].touching(way.along, way.across).into_iter();
+        near.filter(|&n| ragged::is_beside(&self.ways[n], way)).collect()
+    }
+
+    /// True when one that was known before is as wide.
+    fn is_alike(&self, way: &Strip) -> bool {
+        self.strips.iter().any(|one| one.direction == way.direction && one.is_as_wide(way))
+    }
+
+    /// Adds what leads before the wall at an end of a way, of what opens into that one, and gives it.
+    fn add_before_walls(&mut self, passing: &Strip, found: &[Opening]) -> Vec<Strip> {
+        let mut added = before_walls::find(self.views, passing, found.iter().filter(|opening| is_held(opening)));
+        added.retain(|way| {
+            let is_new = self.is_alike(way) && self.beside(way).is_empty();
+            if is_new {
+                self.add(way.clone());
+            }
+            is_new
+        });
+        added
+    }
+
+    /// Adds what ends at a frontier of what opens into a way; true where there is such.
+    fn add_at_frontiers(&mut self, passing: &Strip, mut found: Vec<Opening>) -> bool {
+        found.retain(|opening| opening.is_frontier && self.is_way(opening, passing));
+        let mut is_any = false;
+        for Opening { mut way, middle, .. } in found {
+            way.along = both(way.along, [middle; 2]);
+            let reaching = Strip { along: wider(way.along, passing.width() / 2.0), ..way.clone() };
+            match self.beside(&reaching)[..] {
+                [] => self.add(way),
+                // Another one ends there, in line.
+                [n] if self.ways[n].is_in_line(&way, IN_LINE) => self.lead_on(n, way.along),
+                _ => continue,
+            }
+            is_any = true;
+        }
+        is_any
+    }
+
+    /// True when what opens into a way is as wide as others, and held or between two rows.
+    fn is_way(&self, opening: &Opening, passing: &Strip) -> bool {
+        let is_along_rows = || self.rows.iter().any(|row| row.direction == opening.way.direction);
+        let leads = || {
+            is_between_rows(opening)
+                && (is_along_rows() || self.is_led_to(&opening.way))
+                && !self.is_through_another(&opening.way, passing)
+        };
+        self.is_alike(&opening.way) && (is_held(opening) || leads())
+    }
+
+    /// True when a way leads to another in line with it: nothing stands across between them.
+    fn is_led_to(&self, way: &Strip) -> bool {
+        let view = &self.views[way.direction];
+        let is_open = |one: &Strip| {
+            let [to, from] = shared(one.along, way.along);
+            from >= to || !(view.column(from)..view.column(to)).any(|n| shut::is_shut_at(view, way, n))
+        };
+        let in_line = self.placed[way.direction].touching([f64::NEG_INFINITY, f64::INFINITY], way.across).into_iter();
+        in_line.map(|n| &self.ways[n]).any(|one| one.is_in_line(way, IN_LINE) && is_open(one))
+    }
+
+    /// True when what opens into one way was seen through the next one: into that it opens as well, or not.
+    fn is_through_another(&self, way: &Strip, passing: &Strip) -> bool {
+        let [view, other] = [way, passing].map(|way| &self.views[way.direction]);
+        let corners = view.rectangle(way.along, way.across);
+        let [along, across] = [0, 1].map(|axis| around(corners.iter().map(|&corner| other.place(corner)[axis])));
+        let near = self.placed[passing.direction].touching(along, across).into_iter().map(|n| &self.ways[n]);
+        near.into_iter().any(|next| {
+            let [s, u] = view.crossing(other, way.middle(), next.middle());
+            holds(way.along, u) && holds(next.along, s)
+        })
+    }
 }
 
 /// True when what opens lies between two sides of which one may be no more than the end of a row.
@@ -93,33 +159,4 @@ fn is_held(opening: &Opening) -> bool {
 /// True when it lies between the ends of two rows.
 fn is_between_rows(opening: &Opening) -> bool {
     opening.stands.into_iter().all(|metres| metres >= ROW)
-}
-
-/// True when a way leads to another in line with it: nothing stands across between them. Of all ways it is known where they
-/// lie.
-fn is_led_to(views: &[Turned], way: &Strip, ways: &[Strip], placed: &[Beside]) -> bool {
-    let view = &views[way.direction];
-    let is_open = |one: &Strip| {
-        let [to, from] = shared(one.along, way.along);
-        from >= to || !(view.column(from)..view.column(to)).any(|n| shut::is_shut_at(view, way, n))
-    };
-    let in_line = placed[way.direction].touching([f64::NEG_INFINITY, f64::INFINITY], way.across).into_iter();
-    in_line.map(|n| &ways[n]).any(|one| is_in_line(one, way) && is_open(one))
-}
-
-/// True when what opens into one way was seen through the next one: into that it opens as well, or not. Of all ways it is
-/// known where they lie.
-fn is_through_another(views: &[Turned], way: &Strip, passing: &Strip, ways: &[Strip], placed: &[Beside]) -> bool {
-    let [view, other] = [way, passing].map(|way| &views[way.direction]);
-    let corners = view.rectangle(way.along, way.across);
-    let [along, across] = [0, 1].map(|axis| around(corners.iter().map(|&corner| other.place(corner)[axis])));
-    placed[passing.direction].touching(along, across).into_iter().map(|n| &ways[n]).any(|next| {
-        let [s, u] = view.crossing(other, way.middle(), next.middle());
-        holds(way.along, u) && holds(next.along, s)
-    })
-}
-
-/// True when one way lies in line with another.
-pub fn is_in_line(one: &Strip, other: &Strip) -> bool {
-    one.direction == other.direction && (0..2).all(|side| (one.across[side] - other.across[side]).abs() <= IN_LINE)
 }

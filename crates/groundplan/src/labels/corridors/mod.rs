@@ -99,6 +99,11 @@ impl Strip {
         is_in_line && self.width() > other.width() && !self.is_as_wide(other)
     }
 
+    /// True when each side of another along the same direction is no farther than so many metres from its own.
+    pub fn is_in_line(&self, other: &Self, within: f64) -> bool {
+        self.direction == other.direction && (0..2).all(|n| (self.across[n] - other.across[n]).abs() <= within)
+    }
+
     /// Its direction and its places, as [`placed`] takes them.
     pub fn place(&self) -> (usize, [f64; 2], [f64; 2]) {
         (self.direction, self.along, self.across)

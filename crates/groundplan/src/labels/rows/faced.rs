@@ -29,7 +29,7 @@ pub fn whole(views: &[Turned], strips: &[Strip], racks: &[Row]) -> Vec<Strip> {
             let is_piece = |m: usize| {
                 let other = &strips[m];
                 let apart = (other.along[0] - strip.along[1]).max(strip.along[0] - other.along[1]);
-                is_in_line(strip, other) && other.is_short() && apart <= APART * strip.length()
+                strip.is_in_line(other, SAME) && other.is_short() && apart <= APART * strip.length()
             };
             let is_other = |m: usize| {
                 overlap(strips[m].along, [from, to]) > view.cell
@@ -56,7 +56,7 @@ pub fn whole(views: &[Turned], strips: &[Strip], racks: &[Row]) -> Vec<Strip> {
             };
             if on[1] - on[0] > SAME && is_free(on) {
                 let pieces = known[strip.direction].touching(on, strip.across).into_iter();
-                let pieces = pieces.filter(|&m| m != n && is_in_line(strip, &strips[m]));
+                let pieces = pieces.filter(|&m| m != n && strip.is_in_line(&strips[m], SAME));
                 whole.along[end] = around(pieces.flat_map(|m| strips[m].along).chain(on))[end];
                 whole.stops[end] = true;
             }
@@ -70,16 +70,12 @@ pub fn whole(views: &[Turned], strips: &[Strip], racks: &[Row]) -> Vec<Strip> {
             Ordering::Equal => m < n,
             order => order.is_gt(),
         };
-        let is_whole = |m: usize| m != n && all[m] != strips[m] && is_longer(m) && is_in_line(&all[m], &all[n]);
+        let is_whole = |m: usize| m != n && all[m] != strips[m] && is_longer(m) && all[m].is_in_line(&all[n], SAME);
         let near = known[strips[n].direction].touching([f64::NEG_INFINITY, f64::INFINITY], strips[n].across);
         strips[n].is_short()
             && near.into_iter().any(|m| is_whole(m) && is_within(strips[n].along, wider(all[m].along, SAME)))
     };
     (0..all.len()).filter(|&n| !is_part(n)).map(|n| all[n].clone()).collect()
-}
-
-fn is_in_line(one: &Strip, other: &Strip) -> bool {
-    (0..2).all(|side| (one.across[side] - other.across[side]).abs() <= SAME)
 }
 
 fn is_within(one: [f64; 2], other: [f64; 2]) -> bool {
