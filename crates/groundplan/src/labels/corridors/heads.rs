@@ -218,13 +218,26 @@ impl Heads<'_> {
         let corners = [[wall, first.across[0]], [inner, last.across[1]]];
         let [one, two] = corners.map(|place| self.other.place(self.view.to_map(place)));
         let [along, across] = [0, 1].map(|axis| sorted([one[axis], two[axis]]));
-        let columns = self.other.column(along[0] + WALL)..self.other.column(along[1] - WALL);
+        let middles = [first, last].map(|aisle| self.other.place(self.view.to_map([wall, aisle.middle()]))[0]);
+        let middles = sorted(middles);
         let margin = SIDES * width;
         let [low, high] = [across[0] + margin, across[1] - margin];
-        let is_clear = !self.other.some_closed(columns.clone(), low, high).any()
-            && self.other.mean_blocked(columns, low, high) <= CLEAR;
+        let along = self.open_about(middles, along, [low, high])?;
+        let columns = self.other.column(along[0] + WALL)..self.other.column(along[1] - WALL);
+        let is_clear = self.other.mean_blocked(columns, low, high) <= CLEAR;
         let way = stretches::ragged(self.other, along, across, along[1] - along[0]);
-        let middles = [first, last].map(|aisle| self.other.place(self.view.to_map([wall, aisle.middle()]))[0]);
-        is_clear.then_some(Led { way, middles: sorted(middles) })
+        is_clear.then_some(Led { way, middles })
+    }
+
+    /// What of a way is open between two places and on from these, if all is: the outermost aisles may be wider than where they meet
+    /// it.
+    fn open_about(&self, [from, to]: [f64; 2], along: [f64; 2], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
+        let columns = self.other.column(along[0] + WALL)..self.other.column(along[1] - WALL);
+        let closed = self.other.some_closed(columns.clone(), low, high);
+        let runs = closed.runs(0..columns.len(), false).map(|run| columns.start + run.start..columns.start + run.end);
+        let mut about = runs.filter(|run| run.start <= self.other.column(from) && self.other.column(to) < run.end);
+        let open = about.next()?;
+        let end = |column: usize, last: usize, own: f64| if column == last { own } else { self.other.along(column) };
+        Some([end(open.start, columns.start, along[0]), end(open.end, columns.end, along[1])])
     }
 }
