@@ -3,6 +3,7 @@
 use super::across::crossing;
 use super::bars;
 use super::empties;
+use super::hollow;
 use super::narrowed;
 use super::passing::{self, Place};
 use super::step::{self, Section};
@@ -73,6 +74,7 @@ pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a 
     let whole = whole.map(|rows| Through::new(views, strips, rows));
     let in_each_row = whole.as_ref().unwrap_or(&through).in_each_row();
     let mut unposted = unposted::find(whole.as_ref().unwrap_or(&through).rows(), strips.len());
+    unposted.extend(hollow::find(through.rows()));
     unposted.retain(|gate| !strips.iter().any(|way| is_in(gate, way)));
     for (gate, is_as_a_bay) in through.at_walls(strips, &placed) {
         let found = if is_as_a_bay { &mut at_walls } else { &mut gates };

@@ -9,6 +9,7 @@ pub(super) mod closed;
 pub(super) mod crossed;
 pub(super) mod empties;
 pub(super) mod gates;
+pub(super) mod hollow;
 pub(super) mod lead;
 pub(super) mod narrowed;
 pub(super) mod passing;
