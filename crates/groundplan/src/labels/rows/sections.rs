@@ -292,20 +292,34 @@ impl<'a> Columns<'a> {
         first < last && self.share(first, last) <= CLUTTER && !self.stands_between(sides)
     }
 
-    /// In how many places of the row, but for what lies between two sides, as much beside one another is free.
+    /// In how many places of the row, but for what lies between two sides and for what is open wider than bays are, as much beside
+    /// one another is free.
     pub fn free_elsewhere(&self, sides: [f64; 2]) -> Free {
         let (first, last) = self.inner(sides);
         let (count, length) = (self.blocked.len(), last - first);
-        let (mut stops, mut taken) = (vec![0u32], vec![0.0]);
+        let (mut stops, mut taken, mut ways) = (vec![0u32], vec![0.0], vec![0u32]);
+        let mut is_wide = vec![false; count];
+        if self.pitch.is_some() {
+            let wide = runs(&self.stops, false).into_iter();
+            let wide = wide.filter(|&(from, to)| {
+                (from == 0 || to == count || self.is_way(from, to))
+                    && !self.is_as_bays([self.place(from), self.place(to)])
+            });
+            wide.for_each(|(from, to)| is_wide[from..to].fill(true));
+        }
         for n in 0..count {
             stops.push(stops[n] + u32::from(self.stops[n]));
             taken.push(taken[n] + self.blocked[n]);
+            ways.push(ways[n] + u32::from(is_wide[n]));
         }
         let is_free = |n: &usize| {
             let end = n + length;
             stops[end] == stops[*n] && taken[end] - taken[*n] <= CLUTTER * length as f64
         };
-        let others = || (0..=count.saturating_sub(length)).filter(|n| n + length <= first || last <= *n);
+        let others = || {
+            let beside = (0..=count.saturating_sub(length)).filter(|n| n + length <= first || last <= *n);
+            beside.filter(|n| ways[n + length] == ways[*n])
+        };
         let places = |count: usize| count as f64 / length.max(1) as f64;
         Free { free: places(others().filter(is_free).count()), places: places(others().count()) }
     }
