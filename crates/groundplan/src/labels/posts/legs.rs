@@ -3,13 +3,14 @@
 //! follow one another at one pitch with the same two faces are a rack, where there are others of the kind or what is back to
 //! back is no table.
 
+use super::against;
 use super::frames::{AISLE, BACK, Frame, LEG, Legs, NEAR, frames};
 use super::grounds::on_map;
+use super::map::{Map, steps};
 use super::uprights::Upright;
 use crate::bands::{map_each, worth};
 use crate::directions::Directions;
 use crate::ends::{both, holds, overlap, shared, sorted, wider};
-use crate::grid::{Grid, State};
 use crate::labels::Scene;
 use crate::labels::near::Near;
 use crate::labels::rows::Row;
@@ -38,21 +39,15 @@ const TABLE: f64 = 14.0;
 const DESK: (f64, f64) = (2.2, 8.0);
 /// Two racks are one where they share so much of their length.
 const SHARED: f64 = 0.8;
-/// Floor shows before a face from so far to so far off, metres, over so much of its length.
-const FRONT: [f64; 2] = [0.25, 0.65];
-const FLOOR: f64 = 0.8;
-const STEP: f64 = 0.1;
 /// A rack that leans on something shows so many of its frames, and where the others would be something stands across so
 /// much of its depth.
 const LEANING: usize = 2;
-const LOST: f64 = 0.5;
+pub const LOST: f64 = 0.5;
 /// What ends one bay before a wall, but for so much, metres, may lean on it; no way leads past shorter bays.
-const UP_TO_WALL: f64 = 0.25;
+pub const UP_TO_WALL: f64 = 0.25;
 const NARROW: f64 = 1.2;
 /// What is smaller than this share of a rack's legs is none where one stands alone.
 const SPECK: f64 = 0.4;
-/// A wall across a row is seen over so much of it.
-const WALL: f64 = 0.9;
 
 /// Frames in a row.
 #[derive(Clone, Debug)]
@@ -60,9 +55,9 @@ pub struct Rack {
     pub row: Row,
     /// From frame to frame, metres.
     pub pitch: f64,
-    frames: usize,
+    pub frames: usize,
     /// How deep these are, metres.
-    depth: f64,
+    pub depth: f64,
     /// How long a leg is along, or a plate, of which no more than a pixel need be seen, metres.
     pub leg: f64,
     /// A plate is the first of them, and the last.
@@ -100,7 +95,9 @@ pub fn find(scene: &Scene, uprights: &[Upright]) -> Vec<Rack> {
         let mut found: Vec<Rack> = found.iter().filter(|rack| is_kind(rack, &found)).cloned().collect();
         let leaning: Vec<Rack> = frames.iter().filter_map(|frame| leaning(&map, &found, &frames, frame)).collect();
         found.extend(leaning);
-        back_to_back(found)
+        let mut found = back_to_back(found);
+        against::up_to_walls(&map, &mut found);
+        found
     };
     let mut racks = map_each(directions.angles.len(), threads, along).concat();
     // Legs of more than one direction's racks are of that which has most of them in a row.
@@ -350,82 +347,6 @@ fn leaning(map: &Map, racks: &[Rack], frames: &[Frame], frame: &Frame) -> Option
     })
 }
 
-/// The map, asked place by place.
-struct Map<'a> {
-    grid: &'a Grid<'a>,
-    heading: [f64; 2],
-}
-
-impl Map<'_> {
-    fn state(&self, [u, v]: [f64; 2]) -> State {
-        let [cos, sin] = self.heading;
-        self.grid.state_at([u * cos - v * sin, u * sin + v * cos])
-    }
-
-    /// True when what most of a rack's frames are of goes on past a face, and nothing does between them: rows that it lies
-    /// across.
-    fn goes_on(&self, rack: &Rack) -> bool {
-        let beyond = |[low, high]: [f64; 2]| [[low - FRONT[1], low], [high, high + FRONT[1]]];
-        beyond(rack.row.across).into_iter().any(|beyond| {
-            let taken = |place: f64| {
-                let at = rack.row.along[0] + place * rack.pitch;
-                self.share(at, beyond, |state| state != State::Free)
-            };
-            let at_frames = (0..rack.frames).filter(|&n| taken(n as f64) >= WALL).count();
-            let between = (1..rack.frames).filter(|&n| taken(n as f64 - 0.5) >= LOST).count();
-            2 * at_frames > rack.frames && 2 * between < rack.frames
-        })
-    }
-
-    /// True when goods at a place along a row hide what stands there, on either side of it: a plate is thinner.
-    fn is_hidden(&self, at: f64, faces: [f64; 2]) -> bool {
-        self.stands(at, faces) && [-LEG, LEG].into_iter().any(|off| self.hides(at + off, faces))
-    }
-
-    /// True when across so much of a row's depth no floor shows at a place along it.
-    fn hides(&self, at: f64, faces: [f64; 2]) -> bool {
-        self.share(at, faces, |state| state != State::Free) >= LOST
-    }
-
-    /// True when something stands across so much of a row's depth at a place along it.
-    fn stands(&self, at: f64, faces: [f64; 2]) -> bool {
-        self.share(at, faces, |state| state == State::Occupied) >= LOST
-    }
-
-    /// Over how much of a row's depth it is so at a place along it.
-    fn share(&self, at: f64, faces: [f64; 2], is: impl Fn(State) -> bool) -> f64 {
-        let is_taken = |v: &f64| steps([at - NEAR, at + NEAR], STEP).any(|u| is(self.state([u, *v])));
-        steps(faces, STEP).filter(is_taken).count() as f64 / steps(faces, STEP).count() as f64
-    }
-
-    /// True when a wall runs across a row and past both its faces somewhere between two places along it, or where it ends.
-    fn is_walled(&self, along: [f64; 2], faces: [f64; 2]) -> bool {
-        let is_occupied = |u: f64, v: f64| self.state([u, v]) == State::Occupied;
-        // A wall may be a single pixel thick and lie askew to the pixels.
-        let finer = STEP.min(self.grid.frame.resolution / 2.0);
-        let is_taken = |at: f64, v: f64| steps([at - NEAR, at + NEAR], finer).any(|u| is_occupied(u, v));
-        let across = || steps(wider(faces, FRONT[1]), STEP);
-        steps(along, STEP)
-            .any(|at| across().filter(|&v| is_taken(at, v)).count() as f64 >= WALL * across().count() as f64)
-    }
-
-    /// True when floor shows before one of a rack's faces.
-    fn shows_floor(&self, row: &Row) -> bool {
-        [(row.across[0], -1.0), (row.across[1], 1.0)].into_iter().any(|(face, side)| {
-            let places =
-                || steps(row.along, STEP).flat_map(|u| steps(FRONT, STEP).map(move |off| [u, face + side * off]));
-            let free = places().filter(|&place| self.state(place) == State::Free).count();
-            free as f64 >= FLOOR * places().count() as f64
-        })
-    }
-}
-
-/// Places from one to another, no farther apart than a step.
-fn steps([from, to]: [f64; 2], step: f64) -> impl Iterator<Item = f64> + Clone {
-    let count = ((to - from) / step).ceil().max(1.0) as usize;
-    (0..=count).map(move |n| from + (to - from) * n as f64 / count as f64)
-}
-
 /// Racks, and in place of two back to back the one that they are.
 fn back_to_back(mut racks: Vec<Rack>) -> Vec<Rack> {
     racks.sort_by(|a, b| a.row.across[0].total_cmp(&b.row.across[0]));
@@ -479,22 +400,10 @@ fn is_kind(rack: &Rack, all: &[Rack]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::{Frame as MapFrame, Table};
+    use crate::grid::Frame as MapFrame;
+    use crate::labels::posts::map::tests::{EAST, on_map};
     use crate::labels::posts::uprights;
     use crate::pixels::Pixels;
-
-    const EAST: [f64; 2] = [1.0, 0.0];
-
-    /// What a map of 12 x 6 m at 0.05 m shows on which some pixels are occupied, and all others free.
-    fn on_map<T>(is_occupied: impl Fn(usize, usize) -> bool, heading: [f64; 2], shows: impl Fn(&Map) -> T) -> T {
-        let pixels: Vec<u8> =
-            (0..120).flat_map(|y| (0..240).map(move |x| [x, y])).map(|[x, y]| u8::from(is_occupied(x, y))).collect();
-        let (mut values, mut states) = ([0; 256], [0; 256]);
-        (values[1], states[1]) = (100, 1);
-        let table = Table::new(&values, &states);
-        let grid = Grid::new(&pixels, true, &table, MapFrame::new(240, 120, 0.05, [0.0; 3]));
-        shows(&Map { grid: &grid, heading })
-    }
 
     #[test]
     fn frames_at_one_place_are_one_and_the_rack_of_them_ends() {
@@ -584,32 +493,5 @@ mod tests {
             on_map(|_, _| false, EAST, |map| rack(0, &frames, 2.0, &legs, map)).row.length()
         };
         assert!((along(1) - 4.0).abs() < 0.01 && (along(3) - 6.0).abs() < 0.01, "{} {}", along(1), along(3));
-    }
-
-    #[test]
-    fn a_wall_across_a_row_runs_past_both_its_faces() {
-        // A wall of one pixel at 5 m from edge to edge, and a rack's end as deep as the row at 2 m.
-        let is_occupied = |x: usize, y: usize| x == 100 || x == 40 && (40..62).contains(&y);
-        let is_walled = |along| on_map(is_occupied, EAST, |map| map.is_walled(along, [2.0, 3.1]));
-        assert_eq!([[0.5, 4.5], [3.0, 5.5], [3.0, 4.95], [6.0, 9.0]].map(is_walled), [false, true, true, false]);
-    }
-
-    #[test]
-    fn a_wall_of_single_pixels_is_one_on_a_map_that_is_turned() {
-        for degrees in [5.0, 20.0, 33.0, 45.0] {
-            let (sin, cos) = libm::sincos(f64::to_radians(degrees));
-            // Through the map's middle; from row to row of pixels no gap is left.
-            let place = |y: f64| 6.0 - (y - 3.0) * sin / cos;
-            let is_occupied = |x: usize, y: usize| {
-                let ends = [y, y + 1].map(|y| place(y as f64 / 20.0) * 20.0);
-                (ends[1].floor()..=ends[0].floor()).contains(&(x as f64))
-            };
-            let [u, v] = [6.0 * cos + 3.0 * sin, 3.0 * cos - 6.0 * sin];
-            let is_walled = |off: f64| {
-                let along = [u + off - 0.4, u + off + 0.4];
-                on_map(is_occupied, [cos, sin], |map| map.is_walled(along, [v - 0.5, v + 0.5]))
-            };
-            assert_eq!([0.0, -1.0, 1.0].map(is_walled), [true, false, false], "{degrees}");
-        }
     }
 }
