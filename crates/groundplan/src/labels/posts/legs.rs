@@ -45,7 +45,7 @@ const LEANING: usize = 2;
 pub const LOST: f64 = 0.5;
 /// What ends one bay before a wall, but for so much, metres, may lean on it; no way leads past shorter bays.
 pub const UP_TO_WALL: f64 = 0.25;
-const NARROW: f64 = 1.45;
+const NARROW: f64 = 1.2;
 /// What is smaller than this share of a rack's legs is none where one stands alone.
 const SPECK: f64 = 0.4;
 
@@ -145,45 +145,25 @@ impl Pitches {
 
     /// From frame to frame along a row, metres, where racks on legs make up most of it: that of most of them.
     pub fn about(&self, row: &Row) -> Option<f64> {
-        let own = self.within(row);
-        // Racks beside each other are in one place.
-        let (mut covered, mut end) = (0.0, f64::NEG_INFINITY);
-        for ([from, to], _) in &own {
-            covered += (to - from.max(end)).max(0.0);
-            end = end.max(*to);
-        }
-        usual(&own).filter(|_| covered > row.length() / 2.0)
-    }
-
-    /// From post to post along a row, metres, where that is told: as its racks on legs have it, however few they are, if what is told
-    /// are several of their bays.
-    pub fn of_told(&self, row: &Row, told: f64) -> f64 {
-        let are_bays = |own: &f64| {
-            let count = (told / own).round();
-            count >= 2.0 && (told - count * own).abs() <= ALIKE * own
-        };
-        usual(&self.within(row)).filter(are_bays).unwrap_or(told)
-    }
-
-    /// The racks in a row, each with what of it they are, along, in order.
-    fn within(&self, row: &Row) -> Vec<([f64; 2], f64)> {
         let first = self.racks.partition_point(|(_, across, _)| across[0] < row.across[0] - self.deepest);
         let near = self.racks[first..].iter().take_while(|(_, across, _)| across[0] < row.across[1]);
         let own =
             near.filter(|(along, across, _)| overlap(*along, row.along) > 0.0 && overlap(*across, row.across) > 0.0);
         let mut own: Vec<([f64; 2], f64)> = own.map(|(along, _, pitch)| (shared(*along, row.along), *pitch)).collect();
         own.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
-        own
+        let of = |pitch: f64| {
+            let alike = own.iter().filter(|(_, other)| (other - pitch).abs() <= ALIKE * pitch);
+            alike.map(|([from, to], _)| to - from).sum::<f64>()
+        };
+        let most = own.iter().map(|(_, pitch)| *pitch).max_by(|one, two| of(*one).total_cmp(&of(*two)));
+        // Racks beside each other are in one place.
+        let (mut covered, mut end) = (0.0, f64::NEG_INFINITY);
+        for ([from, to], _) in &own {
+            covered += (to - from.max(end)).max(0.0);
+            end = end.max(*to);
+        }
+        most.filter(|_| covered > row.length() / 2.0)
     }
-}
-
-/// The pitch of most of some racks, by how long they are.
-fn usual(racks: &[([f64; 2], f64)]) -> Option<f64> {
-    let of = |pitch: f64| {
-        let alike = racks.iter().filter(|(_, other)| (other - pitch).abs() <= ALIKE * pitch);
-        alike.map(|([from, to], _)| to - from).sum::<f64>()
-    };
-    racks.iter().map(|(_, pitch)| *pitch).max_by(|one, two| of(*one).total_cmp(&of(*two)))
 }
 
 /// Frames that follow one another at one pitch, and that.

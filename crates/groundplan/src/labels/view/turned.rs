@@ -190,8 +190,7 @@ impl Turned {
     /// about that one.
     pub fn pitch_of(&self, row: &Row) -> Option<f64> {
         let about = || self.by_rows.as_ref().map_or(self.pitch, |pitch| pitch.about(row));
-        let told = || about().map(|told| self.on_legs.of_told(row, told));
-        self.on_legs.about(row).or_else(told)
+        self.on_legs.about(row).or_else(about)
     }
 
     /// Lets go of all that is seen: what is left says where places are.

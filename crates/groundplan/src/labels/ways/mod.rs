@@ -51,8 +51,8 @@ const SELDOM: f64 = 0.06;
 const AT_WALL: f64 = 0.001;
 /// What is as wide as a bay is an empty one where more would be.
 const ANYWHERE: f64 = 0.4;
-/// Posts leave so much of a bay, in pitches, or but for so much, metres, or more.
-const ONE_BAY: (f64, f64) = (0.92, 0.25);
+/// Posts leave so much of a bay, in pitches, or more.
+const ONE_BAY: f64 = 0.92;
 /// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
 const WALL: f64 = 0.9;
 const TAKEN: f64 = 0.2;
@@ -210,8 +210,7 @@ impl<'a> Asked<'a> {
     /// True when it leads through all rows of its part between their ends and is just as wide as one bay, chance would open as many
     /// at some place, and bars do not tell otherwise. Where something stands along their faces, as beams do, bays are closed.
     fn is_likely_through_all(&self) -> bool {
-        let least = |pitch: f64| (ONE_BAY.0 * pitch).min(pitch - ONE_BAY.1);
-        let is_one_bay = || self.pitch().is_some_and(|pitch| (least(pitch)..=pitch).contains(&self.width));
+        let is_one_bay = || self.pitch().is_some_and(|pitch| (ONE_BAY * pitch..=pitch).contains(&self.width));
         let expected = || empties::expected_bare(self.context.place, self.context.strips, self.n);
         self.own.is_whole()
             && self.own.is_within
