@@ -298,3 +298,32 @@ def test_a_way_two_shelves_wide_in_which_no_post_stands_is_no_shelf(seed: int, r
     assert all(any(way.contains(shapely.Point(side + x, side + y)) for way in across) for x, y in middles)
     # Those past the rows' ends are two more; some of the others may be in line.
     assert len(across) <= 6
+
+
+def against_a_wall(rows: int, pitch: float, off: float, bump: float) -> Picture:
+    """Racks on legs that end so far before the east wall, at which their last legs stand, as far before it as they are seen."""
+    end = 4.0 + 9 * pitch
+
+    def boxes() -> Iterator[Box]:
+        for n in range(rows):
+            y = 3.0 + 4.1 * n
+            yield from legs(4.0, y, 9, 1.1, pitch)
+            for low in (y, y + 1.0):
+                yield end + off - bump, low, end + off, low + 0.1
+
+    return hall(end + off, 3.0 + 4.1 * rows, boxes())
+
+
+@pytest.mark.parametrize("rows", [3, 4])
+@pytest.mark.parametrize("pitch", [1.6, 2.1, 2.7])
+def test_racks_whose_last_legs_are_bumps_on_a_wall_stand_against_it(pitch: float, rows: int) -> None:
+    survey = groundplan.survey(against_a_wall(rows, pitch, pitch + 0.05, 0.1), resolution=RESOLUTION)
+    assert len([way for way in survey.of_kind("corridor") if way["name"][0] == "C"]) == 1
+    for rack in survey.of_kind("rack"):
+        assert np.hypot(*np.subtract(*rack["axis"])) == pytest.approx(10 * pitch, abs=0.3)
+
+
+@pytest.mark.parametrize("pitch", [1.6, 2.1, 2.7])
+def test_a_way_as_wide_as_a_bay_leads_past_racks_on_legs_along_a_bare_wall(pitch: float) -> None:
+    survey = groundplan.survey(against_a_wall(4, pitch, pitch + 0.05, 0.0), resolution=RESOLUTION)
+    assert len([way for way in survey.of_kind("corridor") if way["name"][0] == "C"]) == 2

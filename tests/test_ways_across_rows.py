@@ -574,3 +574,30 @@ def test_staggered_gaps_as_wide_as_a_bay_a_whole_number_of_bays_apart_are_empty_
     gaps = [[(bay * n, bay * (n + 1) - 2) for n in empty] for empty in ((2,), (), (5,), ())]
     survey = groundplan.survey(closed_rows(gaps, length=9 * bay), resolution=RESOLUTION)
     assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 6
+
+
+def guarded(rows: int, wide: int, narrow: int, guards: int) -> Picture:
+    """Full rows of two racks with bays of 1.95 m from post to post, a wide way through all and one that guards leave 1.45 m of."""
+    bay, depth, aisle, end = 39, 36, 92, 70
+    blocks = (7, 6, 6)
+    lefts = [20 + end, 20 + end + 7 * bay + narrow, 20 + end + 13 * bay + narrow + wide]
+    picture = walled(lefts[2] - 20 + 6 * bay + end, rows * depth + (rows + 1) * aisle)
+    for low in (20 + aisle + n * (aisle + depth) for n in range(rows)):
+        for left, bays in zip(lefts, blocks, strict=True):
+            for n in range(bays):
+                for rack in (low, low + depth // 2):
+                    picture[rack : rack + depth // 2 - 1, left + n * bay + 2 : left + (n + 1) * bay - 1] = 0
+            for post in range(bays + 1):
+                for face in (low, low + depth - 2):
+                    picture[face : face + 2, left + post * bay - 1 : left + post * bay + 1] = 0
+        for at in (lefts[0] + 7 * bay + guards, lefts[1] - guards):
+            for face in (low, low + depth - 2):
+                picture[face : face + 2, at - 1 : at + 1] = 0
+    return picture
+
+
+@pytest.mark.parametrize("rows", [3, 5])
+def test_a_way_that_guards_narrow_is_one_through_full_rows_whatever_wider_ways_there_are(rows: int) -> None:
+    survey = groundplan.survey(guarded(rows, 100, 37, 3), resolution=RESOLUTION)
+    crossings = [junction["type"] for junction in survey.of_kind("junction")]
+    assert sorted(crossings) == ["L"] * 4 + ["T"] * (4 + 2 * (rows - 1)) + ["X"] * (2 * (rows - 1))
