@@ -9,7 +9,12 @@ from zoo import Picture, walled
 import groundplan
 
 RESOLUTION = 0.05
-AISLE, DEPTH, CROSS, LENGTH = 60, 20, 70, 500  # pixels: aisles of 3 m, racks of 1 m by 25 m, ways of 3.5 m past their ends
+AISLE, DEPTH, CROSS, LENGTH = (
+    60,
+    20,
+    70,
+    500,
+)  # pixels: aisles of 3 m, racks of 1 m by 25 m, ways of 3.5 m at their ends
 
 
 def hall(gaps: list[list[int]], width: int) -> Picture:
@@ -49,7 +54,7 @@ def test_ways_in_line_through_several_racks_are_one() -> None:
 
 
 def broken(first: int, second: int | None) -> Picture:
-    """Three racks of which little of what is between the faces was seen: of the middle one each face is open at a place, or one."""
+    """Three racks between whose faces little was seen: of the middle one each face is open at a place, or one is."""
     picture = hall([[], [], []], 40)
     for row in range(3):
         low = 20 + AISLE + row * (AISLE + DEPTH)

@@ -301,7 +301,7 @@ def test_a_way_two_shelves_wide_in_which_no_post_stands_is_no_shelf(seed: int, r
 
 
 def against_a_wall(rows: int, pitch: float, off: float, bump: float) -> Picture:
-    """Racks on legs that end so far before the east wall, at which their last legs stand, as far before it as they are seen."""
+    """Racks on legs that end so far before the east wall; legs that stand against it reach so far before it."""
     end = 4.0 + 9 * pitch
 
     def boxes() -> Iterator[Box]:

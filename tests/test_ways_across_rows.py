@@ -577,7 +577,7 @@ def test_staggered_gaps_as_wide_as_a_bay_a_whole_number_of_bays_apart_are_empty_
 
 
 def guarded(rows: int, wide: int, narrow: int, guards: int) -> Picture:
-    """Full rows of two racks with bays of 1.95 m from post to post, a wide way through all and one that guards leave 1.45 m of."""
+    """Full rows of two racks with bays of 1.95 m, a wide way through all and one that guards leave 1.45 m of."""
     bay, depth, aisle, end = 39, 36, 92, 70
     blocks = (7, 6, 6)
     lefts = [20 + end, 20 + end + 7 * bay + narrow, 20 + end + 13 * bay + narrow + wide]
