@@ -596,7 +596,7 @@ def guarded(rows: int, wide: int, narrow: int, guards: int) -> Picture:
     return picture
 
 
-@pytest.mark.parametrize("rows", [3, 5])
+@pytest.mark.parametrize("rows", [4, 5])
 def test_a_way_that_guards_narrow_is_one_through_full_rows_whatever_wider_ways_there_are(rows: int) -> None:
     survey = groundplan.survey(guarded(rows, 100, 37, 3), resolution=RESOLUTION)
     crossings = [junction["type"] for junction in survey.of_kind("junction")]

@@ -276,6 +276,11 @@ impl Plan {
         let alike = [ways::among(evidence, look, views, &across, known.len()), as_bays].concat();
         let carried = carried::on(evidence, look, views, joined::apart(views, alike));
         let mut plan = if carried == self.strips { self } else { Self::new(views, carried, threads) };
+        // Two that were led on to meet each other lie over one another.
+        let once = joined::once(views, &plan.strips);
+        if once.len() < plan.strips.len() {
+            plan = Self::new(views, once, threads);
+        }
         if let Some(more) = heads::with(evidence, look, views, &plan.strips, &plan.rows) {
             plan = Self::new(views, more, threads);
         }

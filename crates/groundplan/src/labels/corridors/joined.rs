@@ -4,6 +4,7 @@ use super::barriers;
 use crate::ends::{around, holds, overlap, shared, sorted};
 use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::{ASKEW, Strip};
+use crate::labels::rows::SAME;
 use crate::labels::view::turned::Turned;
 use crate::labels::ways::across::crossing;
 use crate::sets::Sets;
@@ -87,6 +88,19 @@ pub fn apart(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
     let mut kept = kept.into_iter();
     strips.retain(|_| kept.next().unwrap_or(false));
     strips
+}
+
+/// The ways, of such as begin, end and lie across at one place the first.
+pub fn once(views: &[Turned], strips: &[Strip]) -> Vec<Strip> {
+    let placed = placed(views, strips.iter().map(Strip::place));
+    let is_again = |n: usize| {
+        let own = &strips[n];
+        let is_same = |other: &Strip| {
+            other.is_in_line(own, SAME) && (0..2).all(|end| (other.along[end] - own.along[end]).abs() <= SAME)
+        };
+        placed[own.direction].touching(own.along, own.across).into_iter().any(|m| m < n && is_same(&strips[m]))
+    };
+    (0..strips.len()).filter(|&n| !is_again(n)).map(|n| strips[n].clone()).collect()
 }
 
 /// True when most of a way's middle, between its own sides, lies on another that runs nearly the same way: one more nearly

@@ -55,13 +55,14 @@ pub struct Rack {
     pub row: Row,
     /// From frame to frame, metres.
     pub pitch: f64,
+    /// How many they are.
     pub frames: usize,
     /// How deep these are, metres.
     pub depth: f64,
     /// How long a leg is along, or a plate, of which no more than a pixel need be seen, metres.
     pub leg: f64,
     /// A plate is the first of them, and the last.
-    closed: [bool; 2],
+    pub closed: [bool; 2],
     /// It is two, back to back.
     is_double: bool,
 }

@@ -292,25 +292,17 @@ impl<'a> Columns<'a> {
         first < last && self.share(first, last) <= CLUTTER && !self.stands_between(sides)
     }
 
-    /// In how many places of the row, but for what lies between two sides and for what is open wider than bays are, as much beside
-    /// one another is free.
+    /// In how many places of the row, but for what lies between two sides and the ways through it that are no bays, as much beside one
+    /// another is free: of several ways none speaks against another.
     pub fn free_elsewhere(&self, sides: [f64; 2]) -> Free {
         let (first, last) = self.inner(sides);
         let (count, length) = (self.blocked.len(), last - first);
         let (mut stops, mut taken, mut ways) = (vec![0u32], vec![0.0], vec![0u32]);
-        let mut is_wide = vec![false; count];
-        if self.pitch.is_some() {
-            let wide = runs(&self.stops, false).into_iter();
-            let wide = wide.filter(|&(from, to)| {
-                (from == 0 || to == count || self.is_way(from, to))
-                    && !self.is_as_bays([self.place(from), self.place(to)])
-            });
-            wide.for_each(|(from, to)| is_wide[from..to].fill(true));
-        }
+        let is_of_way = self.within_ways();
         for n in 0..count {
             stops.push(stops[n] + u32::from(self.stops[n]));
             taken.push(taken[n] + self.blocked[n]);
-            ways.push(ways[n] + u32::from(is_wide[n]));
+            ways.push(ways[n] + u32::from(is_of_way[n]));
         }
         let is_free = |n: &usize| {
             let end = n + length;
@@ -322,6 +314,22 @@ impl<'a> Columns<'a> {
         };
         let places = |count: usize| count as f64 / length.max(1) as f64;
         Free { free: places(others().filter(is_free).count()), places: places(others().count()) }
+    }
+
+    /// Which columns are of ways that are as wide as no bays, where these are known.
+    fn within_ways(&self) -> Vec<bool> {
+        let mut within = vec![false; self.stops.len()];
+        let is_way = |&(from, to): &(usize, usize)| {
+            from > 0
+                && to < self.stops.len()
+                && self.is_way(from, to)
+                && !self.is_as_bays([self.place(from), self.place(to)])
+        };
+        if self.pitch.is_some() {
+            let open = runs(&self.stops, false).into_iter();
+            open.filter(is_way).for_each(|(from, to)| within[from..to].fill(true));
+        }
+        within
     }
 
     /// The columns between two sides, without what stands at these.

@@ -28,7 +28,7 @@ use std::collections::BTreeMap;
 use std::iter;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
-const IN_LINE: (f64, f64) = (0.7, 0.5);
+pub const IN_LINE: (f64, f64) = (0.7, 0.5);
 /// Rows that hold goods are open over less than this share of their length.
 const OPEN: f64 = 0.5;
 
@@ -74,7 +74,8 @@ pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a 
     let whole = whole.map(|rows| Through::new(views, strips, rows));
     let in_each_row = whole.as_ref().unwrap_or(&through).in_each_row();
     let mut unposted = unposted::find(whole.as_ref().unwrap_or(&through).rows(), strips.len());
-    unposted.extend(hollow::find(through.rows()));
+    // A row that a known way cuts is solid in each of its pieces.
+    let hollow = hollow::find(through.rows());
     unposted.retain(|gate| !strips.iter().any(|way| is_in(gate, way)));
     for (gate, is_as_a_bay) in through.at_walls(strips, &placed) {
         let found = if is_as_a_bay { &mut at_walls } else { &mut gates };
@@ -125,6 +126,12 @@ pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a 
     gates.extend(several);
     gates.extend(at_walls.into_iter().chain(thin::gates(views, strips)));
     let mut ways = in_line(gates);
+    // What leads through other rows as well is known better than by the faces of one.
+    let is_part = |gate: &Strip| ways.iter().any(|way| is_in(gate, way) && way.length() > gate.length() + IN_LINE.1);
+    let hollow: Vec<Strip> = hollow.into_iter().filter(|gate| !is_part(gate)).collect();
+    let is_new = |gate: &Strip| !strips.iter().chain(&unposted).any(|way| is_in(gate, way));
+    let hollow: Vec<Strip> = hollow.into_iter().filter(is_new).collect();
+    unposted.extend(hollow);
     ways.retain(|way| !unposted.iter().any(|gate| is_in(gate, way)));
     as_bays.extend(turns);
     as_bays.extend(as_wide_as_others(views, strips, &ways, in_each_row));

@@ -1,6 +1,7 @@
 //! Ways through racks that show their faces alone: where goods or shelves stand all along both faces of a row, and nothing closes what
 //! is open from aisle to aisle, that is no empty bay.
 
+use super::gates::IN_LINE;
 use super::widths::are_alike;
 use crate::labels::corridors::Strip;
 use crate::labels::rows::sections::{FACE, TAKEN, WIDTH};
@@ -12,7 +13,13 @@ use std::iter;
 
 /// Both faces begin and end beside a way at one place, but for so much, metres.
 const ALIKE: f64 = 0.35;
-/// What is so much narrower than gates in other rows may be one, metres.
+/// Two racks back to back are no deeper, metres; between such as are deeper than a corridor is narrow one sees their backs, or nothing:
+/// so near to its middle, metres, no more of a row is free than that.
+const DEEPEST: f64 = 2.6;
+const LANE: f64 = 1.3;
+const MIDDLE: f64 = 0.3;
+const FREE: f64 = 0.8;
+/// What is so much narrower than gates through other rows is one here: bays that are empty would break the faces elsewhere, metres.
 const NARROWER: f64 = 0.3;
 /// Something stands along so much of what was seen of the faces elsewhere, which are so many times as long as the way.
 const SOLID: f64 = 0.96;
@@ -20,22 +27,29 @@ const LONG: f64 = 1.5;
 /// And along so much of as much as the shortest rack beside it.
 const BESIDE: f64 = 0.8;
 
-/// The ways through rows whose faces are solid: what nothing closes on either side, and of what is as wide in rows along the same
-/// direction that of which something closes a side, too.
+/// The ways through rows whose faces are solid: what nothing closes on either side; of what something closes on one that is as wide
+/// as one of these, and what is in line with one, be the faces beside it solid or not. Deeper rows may be rooms between two
+/// corridors.
 pub fn find(rows: &[Seen]) -> Vec<Strip> {
-    let found: Vec<Gap> = rows.iter().flat_map(|seen| Faces::new(seen).gaps()).collect();
-    let (open, others): (Vec<_>, Vec<_>) = found.into_iter().partition(|gap| gap.is_open);
-    let is_as_open = |gap: &Gap| {
-        open.iter().any(|one| one.way.direction == gap.way.direction && are_alike(gap.way.width(), one.way.width()))
+    let racks = rows.iter().filter(|seen| seen.row.depth() <= DEEPEST);
+    let found: Vec<Gap> = racks.flat_map(|seen| Faces::new(seen).gaps()).collect();
+    let (open, others): (Vec<_>, Vec<_>) = found.into_iter().partition(|gap| gap.closed == Some(0));
+    let is_like_open = |gap: &Gap| {
+        let is_so = |one: &Gap| {
+            one.way.direction == gap.way.direction
+                && ((one.way.middle() - gap.way.middle()).abs() <= IN_LINE.0
+                    || gap.closed == Some(1) && are_alike(gap.way.width(), one.way.width()))
+        };
+        open.iter().any(is_so)
     };
-    let others: Vec<Strip> = others.into_iter().filter(is_as_open).map(|gap| gap.way).collect();
+    let others: Vec<Strip> = others.into_iter().filter(is_like_open).map(|gap| gap.way).collect();
     open.into_iter().map(|gap| gap.way).chain(others).collect()
 }
 
-/// What is open through a row whose faces are solid, and whether nothing closes the row beside it.
+/// What is open through a row, and where its faces are solid, on how many sides something closes the row.
 struct Gap {
     way: Strip,
-    is_open: bool,
+    closed: Option<usize>,
 }
 
 /// The faces of a row, without what lies between its ends and walls.
@@ -57,15 +71,25 @@ impl<'a, 'b> Faces<'a, 'b> {
     fn gaps(&self) -> Vec<Gap> {
         let gaps: Vec<Run> =
             self.open[0].iter().filter_map(|gap| self.of_both(*gap)).filter(|gap| self.may_be_way(*gap)).collect();
-        if gaps.is_empty() || !self.are_solid_but_for(&gaps) {
+        if gaps.is_empty() || self.is_lane() {
             return Vec::new();
         }
+        let is_solid = self.are_solid_but_for(&gaps);
         let gap = |gap: Run| {
             let ends = self.ends(gap);
-            let is_open = !ends.iter().any(|end| self.seen.columns.is_closed_at(*end));
-            Some(Gap { way: self.seen.gate(ends)?, is_open })
+            let closed = ends.iter().filter(|end| self.seen.columns.is_closed_at(**end)).count();
+            Some(Gap { way: self.seen.gate(ends)?, closed: is_solid.then_some(closed) })
         };
         gaps.into_iter().filter_map(gap).collect()
+    }
+
+    /// True when it may be a corridor between two rooms.
+    fn is_lane(&self) -> bool {
+        let (view, row) = (self.seen.views[0], &self.shelves.row);
+        let middle = f64::midpoint(row.across[0], row.across[1]);
+        let blocked = view.some_blocked(view.columns(row.along), middle - MIDDLE, middle + MIDDLE);
+        let free = blocked.iter().filter(|share| **share <= 0.0).count() as f64;
+        row.depth() > LANE && free >= FREE * blocked.len() as f64
     }
 
     fn metres(&self, cells: usize) -> f64 {
