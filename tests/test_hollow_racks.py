@@ -53,6 +53,20 @@ def test_ways_in_line_through_several_racks_are_one() -> None:
     assert types(hall([[230], [230], [230]], 32)) == sorted(plain(3) + ["T"] * 2 + ["X"] * 2)
 
 
+@pytest.mark.parametrize("length", [600, 640])
+def test_a_corridor_between_rooms_whose_doors_face_each_other_is_no_rack(length: int) -> None:
+    corridor, wall, depth, door = 40, 3, 80, 30
+    picture = walled(length, 3 * depth + 4 * corridor)
+    for low in (20 + corridor + n * (corridor + depth) for n in range(3)):
+        picture[low : low + depth, 60 : length - 20] = 0
+        picture[low + wall : low + depth - wall, 60 + wall : length - 20 - wall] = 254
+        for place in range(95, length - 60, 100):
+            picture[low : low + depth, place : place + door] = 254
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    across = [way["axis"][0][0] for way in survey.of_kind("corridor") if way["name"][0] == "C"]
+    assert len(across) == 2, across
+
+
 def broken(first: int, second: int | None) -> Picture:
     """Three racks between whose faces little was seen: of the middle one each face is open at a place, or one is."""
     picture = hall([[], [], []], 40)

@@ -327,3 +327,19 @@ def test_racks_whose_last_legs_are_bumps_on_a_wall_stand_against_it(pitch: float
 def test_a_way_as_wide_as_a_bay_leads_past_racks_on_legs_along_a_bare_wall(pitch: float) -> None:
     survey = groundplan.survey(against_a_wall(4, pitch, pitch + 0.05, 0.0), resolution=RESOLUTION)
     assert len([way for way in survey.of_kind("corridor") if way["name"][0] == "C"]) == 2
+
+
+@pytest.mark.parametrize("wide", [0.5, 1.1])
+@pytest.mark.parametrize("pitch", [1.6, 2.1, 2.7])
+def test_what_stands_at_a_wall_before_racks_and_is_wider_than_legs_leaves_the_way_past_them(
+    pitch: float, wide: float
+) -> None:
+    end = 4.0 + 9 * pitch
+
+    def boxes() -> Iterator[Box]:
+        for n in range(4):
+            yield from legs(4.0, 3.0 + 4.1 * n, 9, 1.1, pitch)
+            yield end + pitch - 0.2, 3.0 + 4.1 * n, end + pitch + 0.05, 3.0 + 4.1 * n + wide
+
+    survey = groundplan.survey(hall(end + pitch + 0.05, 19.4, boxes()), resolution=RESOLUTION)
+    assert len([way for way in survey.of_kind("corridor") if way["name"][0] == "C"]) == 2
