@@ -38,7 +38,7 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
             known.add_at_frontiers(&passing, found);
         }
     }
-    // When all are known: ways lead on where others open into that.
+    // When all are known, with what they were led on to: ways lead on where others open into that.
     for on in along_walls::find(views, &known.ways, &known.placed, rows) {
         let is_opened_into = known.add_at_frontiers(&on.floor, openings(&on.floor));
         if is_opened_into || along_walls::is_led_to(views, &on, &known.ways, &known.placed) {

@@ -218,8 +218,8 @@ impl Heads<'_> {
         let corners = [[wall, first.across[0]], [inner, last.across[1]]];
         let [one, two] = corners.map(|place| self.other.place(self.view.to_map(place)));
         let [along, across] = [0, 1].map(|axis| sorted([one[axis], two[axis]]));
-        let middles = [first, last].map(|aisle| self.other.place(self.view.to_map([wall, aisle.middle()]))[0]);
-        let middles = sorted(middles);
+        let place = |aisle: &Strip| self.other.place(self.view.to_map([wall, aisle.middle()]))[0];
+        let middles = sorted([first, last].map(place));
         let margin = SIDES * width;
         let [low, high] = [across[0] + margin, across[1] - margin];
         let along = self.open_about(middles, along, [low, high])?;
@@ -229,8 +229,8 @@ impl Heads<'_> {
         is_clear.then_some(Led { way, middles })
     }
 
-    /// What of a way is open between two places and on from these, if all is: the outermost aisles may be wider than where they meet
-    /// it.
+    /// What of a way is open between the middles of the outermost aisles and on from these, which may be wider than where they meet it;
+    /// nothing where something closes it between them.
     fn open_about(&self, [from, to]: [f64; 2], along: [f64; 2], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
         let columns = self.other.column(along[0] + WALL)..self.other.column(along[1] - WALL);
         let closed = self.other.some_closed(columns.clone(), low, high);
