@@ -9,12 +9,8 @@ from zoo import Picture, walled
 import groundplan
 
 RESOLUTION = 0.05
-AISLE, DEPTH, CROSS, LENGTH = (
-    60,
-    20,
-    70,
-    500,
-)  # pixels: aisles of 3 m, racks of 1 m by 25 m, ways of 3.5 m at their ends
+# Pixels: aisles of 3 m, racks of 1 m by 25 m, ways of 3.5 m past their ends.
+AISLE, DEPTH, CROSS, LENGTH = 60, 20, 70, 500
 
 
 def hall(gaps: list[list[int]], width: int) -> Picture:
