@@ -20,6 +20,7 @@ use super::junctions;
 use super::junctions::meeting::Meeting;
 use super::junctions::shut;
 use super::posts::legs;
+use super::posts::rack::Rack;
 use super::posts::uprights::{self, Upright};
 use super::rooms::{Bar, Space};
 use super::rows::blocks::Standing;
@@ -56,7 +57,7 @@ pub struct Glance<'a> {
 }
 
 impl<'a> Glance<'a> {
-    pub fn new(scene: &Scene<'a>, look: Look<'a>, uprights: &[Upright], racks: &[legs::Rack]) -> Self {
+    pub fn new(scene: &Scene<'a>, look: Look<'a>, uprights: &[Upright], racks: &[Rack]) -> Self {
         let on_legs: Vec<Row> = racks.iter().map(|rack| rack.row.clone()).collect();
         let count = scene.directions.angles.len();
         let mut views: Vec<_> = (0..count).map(|direction| Turned::new(scene, direction, &on_legs)).collect();

@@ -1,8 +1,8 @@
 //! Racks on legs that end at a wall: the last legs stand against it and are seen as bumps, one bay beyond the last ones that stand by
 //! themselves.
 
-use super::legs::{Rack, UP_TO_WALL};
 use super::map::{Map, steps};
+use super::rack::{Rack, UP_TO_WALL};
 use crate::ends::{holds, wider};
 use crate::grid::State;
 use crate::labels::junctions::shut::sign;

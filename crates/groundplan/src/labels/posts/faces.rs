@@ -1,6 +1,6 @@
 //! The faces of racks on legs as lines: a lidar sees no more of them than their legs, of which a radiogram has no peak.
 
-use super::legs::Rack;
+use super::rack::Rack;
 use crate::ends::{holds, wider};
 use crate::grid::{Frame, tidy};
 use crate::lines::{Lines, SHORT};

@@ -7,10 +7,11 @@ use super::against;
 use super::frames::{AISLE, BACK, Frame, LEG, Legs, NEAR, frames};
 use super::grounds::on_map;
 use super::map::{Map, steps};
+use super::rack::{ALIKE, Rack, UP_TO_WALL};
 use super::uprights::Upright;
 use crate::bands::{map_each, worth};
 use crate::directions::Directions;
-use crate::ends::{both, holds, overlap, shared, sorted, wider};
+use crate::ends::{both, holds, overlap, sorted, wider};
 use crate::labels::Scene;
 use crate::labels::near::Near;
 use crate::labels::rows::Row;
@@ -25,9 +26,7 @@ const QUARTER: usize = 4;
 /// So many frames make what may be a rack, and so many of a kind are racks: one may be a long table.
 const FRAMES: usize = 3;
 const KIND: usize = 2;
-/// Pitches of a kind differ by no more than this share, and of racks that are not as deep by no more than that, of which there are
-/// more.
-const ALIKE: f64 = 0.08;
+/// Pitches of racks that are not as deep differ by no more than this share where they are of a kind, and of these there are more.
 const STEPS: f64 = 0.01;
 const SEVERAL: usize = 3;
 /// Between plates a single rack shows so many frames, with these.
@@ -39,45 +38,12 @@ const TABLE: f64 = 14.0;
 const DESK: (f64, f64) = (2.2, 8.0);
 /// Two racks are one where they share so much of their length.
 const SHARED: f64 = 0.8;
-/// A rack that leans on something shows so many of its frames, and where the others would be something stands across so
-/// much of its depth.
+/// A rack that leans on something shows so many of its frames.
 const LEANING: usize = 2;
-pub const LOST: f64 = 0.5;
-/// What ends one bay before a wall, but for so much, metres, may lean on it; no way leads past shorter bays.
-pub const UP_TO_WALL: f64 = 0.25;
+/// No way leads between a wall and what ends one bay before it, where bays are shorter, metres: that leans on the wall.
 const NARROW: f64 = 1.2;
 /// What is smaller than this share of a rack's legs is none where one stands alone.
 const SPECK: f64 = 0.4;
-
-/// Frames in a row.
-#[derive(Clone, Debug)]
-pub struct Rack {
-    pub row: Row,
-    /// From frame to frame, metres.
-    pub pitch: f64,
-    /// How many they are.
-    pub frames: usize,
-    /// How deep these are, metres.
-    pub depth: f64,
-    /// How long a leg is along, or a plate, of which no more than a pixel need be seen, metres.
-    pub leg: f64,
-    /// A plate is the first of them, and the last.
-    pub closed: [bool; 2],
-    /// It is two, back to back.
-    is_double: bool,
-}
-
-impl Rack {
-    /// Where the outer sides of its legs are, across.
-    pub fn faces(&self) -> [f64; 2] {
-        wider(self.row.across, self.leg / 2.0)
-    }
-
-    /// What is seen along each of its faces, metres.
-    pub fn structure(&self) -> f64 {
-        self.frames as f64 * self.leg
-    }
-}
 
 /// The racks that some uprights are legs of, along each direction.
 pub fn find(scene: &Scene, uprights: &[Upright]) -> Vec<Rack> {
@@ -125,46 +91,6 @@ fn lies_over(directions: &Directions, row: &Row, other: &Row) -> bool {
     let v = f64::midpoint(other.across[0], other.across[1]);
     let mut places = steps(other.along, row.depth().min(row.length()) / 2.0);
     places.any(|u| holds(row.along, u * cos - v * sin) && holds(row.across, u * sin + v * cos))
-}
-
-/// The racks of one direction, by which rows tell how far it is from frame to frame.
-#[derive(Default)]
-pub struct Pitches {
-    /// From where to where along, across, and the pitch, in the order of their places across.
-    racks: Vec<([f64; 2], [f64; 2], f64)>,
-    deepest: f64,
-}
-
-impl Pitches {
-    pub fn of(direction: usize, racks: &[Rack]) -> Self {
-        let own = racks.iter().filter(|rack| rack.row.direction == direction);
-        let mut racks: Vec<_> = own.map(|Rack { row, pitch, .. }| (row.along, row.across, *pitch)).collect();
-        racks.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]));
-        let deepest = racks.iter().map(|(_, across, _)| across[1] - across[0]).fold(0.0, f64::max);
-        Self { racks, deepest }
-    }
-
-    /// From frame to frame along a row, metres, where racks on legs make up most of it: that of most of them.
-    pub fn about(&self, row: &Row) -> Option<f64> {
-        let first = self.racks.partition_point(|(_, across, _)| across[0] < row.across[0] - self.deepest);
-        let near = self.racks[first..].iter().take_while(|(_, across, _)| across[0] < row.across[1]);
-        let own =
-            near.filter(|(along, across, _)| overlap(*along, row.along) > 0.0 && overlap(*across, row.across) > 0.0);
-        let mut own: Vec<([f64; 2], f64)> = own.map(|(along, _, pitch)| (shared(*along, row.along), *pitch)).collect();
-        own.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
-        let of = |pitch: f64| {
-            let alike = own.iter().filter(|(_, other)| (other - pitch).abs() <= ALIKE * pitch);
-            alike.map(|([from, to], _)| to - from).sum::<f64>()
-        };
-        let most = own.iter().map(|(_, pitch)| *pitch).max_by(|one, two| of(*one).total_cmp(&of(*two)));
-        // Racks beside each other are in one place.
-        let (mut covered, mut end) = (0.0, f64::NEG_INFINITY);
-        for ([from, to], _) in &own {
-            covered += (to - from.max(end)).max(0.0);
-            end = end.max(*to);
-        }
-        most.filter(|_| covered > row.length() / 2.0)
-    }
 }
 
 /// Frames that follow one another at one pitch, and that.

@@ -1,7 +1,7 @@
 //! The map, asked place by place along and across a heading: what stands where frames of racks may be, and before their faces.
 
 use super::frames::{LEG, NEAR};
-use super::legs::{LOST, Rack};
+use super::rack::Rack;
 use crate::ends::wider;
 use crate::grid::{Grid, State};
 use crate::labels::rows::Row;
@@ -10,6 +10,8 @@ use crate::labels::rows::Row;
 const FRONT: [f64; 2] = [0.25, 0.65];
 const FLOOR: f64 = 0.8;
 const STEP: f64 = 0.1;
+/// What stands across so much of a row's depth hides what is there.
+const LOST: f64 = 0.5;
 /// A wall across a row is seen over so much of it.
 const WALL: f64 = 0.9;
 

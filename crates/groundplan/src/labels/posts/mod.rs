@@ -13,4 +13,5 @@ pub(super) mod map;
 pub(super) mod period;
 pub(super) mod pillars;
 pub(super) mod pitch;
+pub(super) mod rack;
 pub(super) mod uprights;

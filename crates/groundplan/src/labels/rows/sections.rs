@@ -13,6 +13,7 @@ use crate::labels::view::runs::runs;
 use crate::labels::view::shares::Shares;
 use crate::labels::view::turned::Turned;
 use crate::labels::ways::step::{BAYS, Section};
+use std::cell::OnceCell;
 use std::mem;
 
 /// A way is so wide, metres.
@@ -67,6 +68,8 @@ pub struct Columns<'a> {
     faces: Vec<[bool; 2]>,
     /// For each column, whether it is of an upright or of goods.
     stops: Vec<bool>,
+    /// How many columns before each are of ways that are as wide as no bays, once it is asked.
+    in_ways: OnceCell<Vec<u32>>,
 }
 
 /// Places of a row that do not overlap, as many as there is room for, and how many of them are free.
@@ -98,6 +101,7 @@ impl<'a> Columns<'a> {
             blocked: Vec::with_capacity(count),
             faces: Vec::with_capacity(count),
             stops: Vec::new(),
+            in_ways: OnceCell::new(),
         };
         let slices = (((row.across[1] - row.across[0]) / view.cell).round() as usize).max(1);
         let height = (row.across[1] - row.across[0]) / slices as f64;
@@ -297,13 +301,12 @@ impl<'a> Columns<'a> {
     pub fn free_elsewhere(&self, sides: [f64; 2]) -> Free {
         let (first, last) = self.inner(sides);
         let (count, length) = (self.blocked.len(), last - first);
-        let (mut stops, mut taken, mut ways) = (vec![0u32], vec![0.0], vec![0u32]);
-        let is_of_way = self.within_ways();
+        let (mut stops, mut taken) = (vec![0u32], vec![0.0]);
         for n in 0..count {
             stops.push(stops[n] + u32::from(self.stops[n]));
             taken.push(taken[n] + self.blocked[n]);
-            ways.push(ways[n] + u32::from(is_of_way[n]));
         }
+        let ways = self.in_ways();
         let is_free = |n: &usize| {
             let end = n + length;
             stops[end] == stops[*n] && taken[end] - taken[*n] <= CLUTTER * length as f64
@@ -316,20 +319,24 @@ impl<'a> Columns<'a> {
         Free { free: places(others().filter(is_free).count()), places: places(others().count()) }
     }
 
-    /// Which columns are of ways that are as wide as no bays, where these are known.
-    fn within_ways(&self) -> Vec<bool> {
-        let mut within = vec![false; self.stops.len()];
-        let is_way = |&(from, to): &(usize, usize)| {
-            from > 0
-                && to < self.stops.len()
-                && self.is_way(from, to)
-                && !self.is_as_bays([self.place(from), self.place(to)])
-        };
-        if self.pitch.is_some() {
-            let open = runs(&self.stops, false).into_iter();
-            open.filter(is_way).for_each(|(from, to)| within[from..to].fill(true));
-        }
-        within
+    /// How many columns before each, and in all, are of ways that are as wide as no bays, where these are known.
+    fn in_ways(&self) -> &[u32] {
+        self.in_ways.get_or_init(|| {
+            let is_way = |&(from, to): &(usize, usize)| {
+                from > 0
+                    && to < self.stops.len()
+                    && self.is_way(from, to)
+                    && !self.is_as_bays([self.place(from), self.place(to)])
+            };
+            let mut count = vec![0; self.stops.len() + 1];
+            if self.pitch.is_some() {
+                for (from, to) in runs(&self.stops, false).into_iter().filter(is_way) {
+                    count[from + 1..=to].fill(1);
+                }
+            }
+            (1..count.len()).for_each(|n| count[n] += count[n - 1]);
+            count
+        })
     }
 
     /// The columns between two sides, without what stands at these.

@@ -73,10 +73,11 @@ pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a 
     // What leads through each row is counted in whole rows.
     let whole = whole.map(|rows| Through::new(views, strips, rows));
     let in_each_row = whole.as_ref().unwrap_or(&through).in_each_row();
-    let mut unposted = unposted::find(whole.as_ref().unwrap_or(&through).rows(), strips.len());
-    // A row that a known way cuts is solid in each of its pieces.
-    let hollow = hollow::find(through.rows());
-    unposted.retain(|gate| !strips.iter().any(|way| is_in(gate, way)));
+    // What the faces of rows show: posts that are missing, and gaps in what is solid. A row that a known way cuts is solid in each
+    // of its pieces.
+    let mut by_faces = unposted::find(whole.as_ref().unwrap_or(&through).rows(), strips.len());
+    by_faces.retain(|gate| !strips.iter().any(|way| is_in(gate, way)));
+    let mut hollow = hollow::find(through.rows());
     for (gate, is_as_a_bay) in through.at_walls(strips, &placed) {
         let found = if is_as_a_bay { &mut at_walls } else { &mut gates };
         found.push(gate);
@@ -128,15 +129,13 @@ pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a 
     let mut ways = in_line(gates);
     // What leads through other rows as well is known better than by the faces of one.
     let is_part = |gate: &Strip| ways.iter().any(|way| is_in(gate, way) && way.length() > gate.length() + IN_LINE.1);
-    let hollow: Vec<Strip> = hollow.into_iter().filter(|gate| !is_part(gate)).collect();
-    let is_new = |gate: &Strip| !strips.iter().chain(&unposted).any(|way| is_in(gate, way));
-    let hollow: Vec<Strip> = hollow.into_iter().filter(is_new).collect();
-    unposted.extend(hollow);
-    ways.retain(|way| !unposted.iter().any(|gate| is_in(gate, way)));
+    hollow.retain(|gate| !is_part(gate) && !strips.iter().chain(&by_faces).any(|way| is_in(gate, way)));
+    by_faces.extend(hollow);
+    ways.retain(|way| !by_faces.iter().any(|gate| is_in(gate, way)));
     as_bays.extend(turns);
     as_bays.extend(as_wide_as_others(views, strips, &ways, in_each_row));
-    as_bays.retain(|gate| !ways.iter().chain(&unposted).any(|way| is_in(gate, way)));
-    as_bays.extend(unposted);
+    as_bays.retain(|gate| !ways.iter().chain(&by_faces).any(|way| is_in(gate, way)));
+    as_bays.extend(by_faces);
     Gates { known: all_known, ways, as_bays: in_line(as_bays) }
 }
 

@@ -8,7 +8,7 @@ use crate::labels::rows::sections::{FACE, TAKEN, WIDTH};
 use crate::labels::rows::seen::Seen;
 use crate::labels::rows::shelves::Shelves;
 use crate::labels::rows::{Row, SHORTEST};
-use crate::labels::view::runs::{Run, common, length, outside, runs};
+use crate::labels::view::runs::{Run, common, length, outside};
 use std::iter;
 
 /// Both faces begin and end beside a way at one place, but for so much, metres.
@@ -150,9 +150,9 @@ impl<'a, 'b> Faces<'a, 'b> {
         (0..2).all(|side| {
             let own = row.across[side];
             let unseen = view.blocked_where(columns.clone(), own - FACE, own + FACE, |share| share > TAKEN);
-            let unseen: Vec<bool> = (0..count).map(|n| unseen.get(n)).collect();
+            let unseen: Vec<Run> = unseen.runs(0..count, true).map(|run| (run.start, run.end)).collect();
             let stands = length(outside(&self.faces()[side], &left_out));
-            let bare = length(outside(&outside(&self.open[side], &left_out), &runs(&unseen, true)));
+            let bare = length(outside(&outside(&self.open[side], &left_out), &unseen));
             stands as f64 >= SOLID * (stands + bare) as f64 && stands as f64 >= LONG * widest as f64
         })
     }
