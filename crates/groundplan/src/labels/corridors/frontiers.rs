@@ -1,16 +1,17 @@
 //! Ways of which little more was seen than where they open into others. They end at a frontier, between what was seen and what was
 //! not (Yamauchi 1997), before they are long enough for a way: past the ends of two rows, or through a row in line with a way, a
-//! robot saw as far as its sensor reaches, and went on. And ways before a wall, or on along one, into which such ways may open.
+//! robot saw as far as its sensor reaches, and went on. Or they go on along a row of which too little was seen to show them for ways.
+//! And ways before a wall, or on along one, into which such ways may open.
 
 use super::along_walls;
 use super::before_walls;
 use super::openings::{self, Opening};
 use super::ragged;
-use crate::ends::{around, both, holds, shared, wider};
+use crate::ends::{around, both, holds, shared, sorted, wider};
 use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::{Strip, UNTOLD};
 use crate::labels::junctions::shut;
-use crate::labels::rows::Row;
+use crate::labels::rows::{DEPTH, Row};
 use crate::labels::view::turned::Turned;
 use crate::parameters::Parameters;
 
@@ -19,7 +20,11 @@ const HELD: f64 = 0.6;
 const HELD_METRES: [f64; 2] = [0.5, 2.0];
 /// Along rows, and across them in line with a known way, as ways lead on, the ends of two rows are enough, over so many metres of
 /// each of which something stands: walls beside a gate are not so deep.
-const ROW: f64 = 0.8;
+pub const ROW: f64 = 0.8;
+/// What goes on farther than it is looked into does so along a row of which so much is not free; and the end of one of which so much
+/// is not holds a side of which no more was seen.
+const ALONG: f64 = 0.35;
+const FILLED: f64 = 0.7;
 /// What is in line with another has its sides no farther than this from that one's, metres.
 pub const IN_LINE: f64 = 0.5;
 
@@ -40,7 +45,9 @@ pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Param
     }
     // When all are known, with what they were led on to: ways lead on where others open into that.
     for on in along_walls::find(views, &known.ways, &known.placed, rows) {
-        let is_opened_into = known.add_at_frontiers(&on.floor, openings(&on.floor));
+        // What is open for long there is floor.
+        let ending = openings(&on.floor).into_iter().filter(|opening| opening.is_frontier).collect();
+        let is_opened_into = known.add_at_frontiers(&on.floor, ending);
         if is_opened_into || along_walls::is_led_to(views, &on, &known.ways, &known.placed) {
             known.lead_on(on.way, on.along);
         }
@@ -86,7 +93,8 @@ impl Known<'_> {
 
     /// Adds what leads before the wall at an end of a way, of what opens into that one, and gives it.
     fn add_before_walls(&mut self, passing: &Strip, found: &[Opening]) -> Vec<Strip> {
-        let mut added = before_walls::find(self.views, passing, found.iter().filter(|opening| is_held(opening)));
+        let mut added =
+            before_walls::find(self.views, passing, found.iter().filter(|opening| is_held(opening, [false; 2])));
         added.retain(|way| {
             let is_new = self.is_alike(way) && self.beside(way).is_empty();
             if is_new {
@@ -97,17 +105,19 @@ impl Known<'_> {
         added
     }
 
-    /// Adds what ends at a frontier of what opens into a way; true where there is such.
+    /// Adds what of what opens into a way ends at a frontier, or goes on along rows; true where there is such.
     fn add_at_frontiers(&mut self, passing: &Strip, mut found: Vec<Opening>) -> bool {
-        found.retain(|opening| opening.is_frontier && self.is_way(opening, passing));
+        found.retain(|opening| self.is_way(opening, passing));
         let mut is_any = false;
-        for Opening { mut way, middle, .. } in found {
+        for Opening { mut way, middle, goes_on, .. } in found {
             way.along = both(way.along, [middle; 2]);
             let reaching = Strip { along: wider(way.along, passing.width() / 2.0), ..way.clone() };
             match self.beside(&reaching)[..] {
                 [] => self.add(way),
-                // Another one ends there, in line.
-                [n] if self.ways[n].is_in_line(&way, IN_LINE) => self.lead_on(n, way.along),
+                // Another one ends there, in line; where what opens goes on, where that ends is told better by its own sides.
+                [n] if self.ways[n].is_in_line(&way, IN_LINE) => {
+                    self.lead_on(n, if goes_on { [middle; 2] } else { way.along });
+                }
                 _ => continue,
             }
             is_any = true;
@@ -115,15 +125,38 @@ impl Known<'_> {
         is_any
     }
 
-    /// True when what opens into a way is as wide as others, and held or between two rows.
+    /// True when what opens into a way is as wide as others, ends at a frontier or goes on beside a row, and is held or between two rows.
     fn is_way(&self, opening: &Opening, passing: &Strip) -> bool {
+        if !(opening.is_frontier || opening.goes_on) || !self.is_alike(&opening.way) {
+            return false;
+        }
+        let filled = self.rows_beside(opening);
         let is_along_rows = || self.rows.iter().any(|row| row.direction == opening.way.direction);
         let leads = || {
             is_between_rows(opening)
                 && (is_along_rows() || self.is_led_to(&opening.way))
                 && !self.is_through_another(&opening.way, passing)
         };
-        self.is_alike(&opening.way) && (is_held(opening) || leads())
+        (opening.is_frontier || filled.into_iter().any(|share| share >= ALONG))
+            && (is_held(opening, filled.map(|share| share >= FILLED)) || leads())
+    }
+
+    /// How much of the rows is not free that end beside what opens, between it and ways along their other sides; on either side the
+    /// most, or nothing.
+    fn rows_beside(&self, Opening { way, ends_row, .. }: &Opening) -> [f64; 2] {
+        let view = &self.views[way.direction];
+        let filled = |side: usize, other: &Strip| {
+            let along = shared(other.along, way.along);
+            let [low, high] = sorted([way.across[side], other.across[1 - side]]);
+            let depth = shut::sign(side) * (other.across[1 - side] - way.across[side]);
+            let is_row = along[0] < along[1] && (DEPTH.0..=DEPTH.1).contains(&depth);
+            if is_row { view.mean_blocked(view.columns(along), low, high) } else { 0.0 }
+        };
+        [0, 1].map(|side| {
+            let beyond = sorted([DEPTH.0, DEPTH.1].map(|depth| way.across[side] + shut::sign(side) * depth));
+            let near = if ends_row[side] { self.placed[way.direction].touching(way.along, beyond) } else { Vec::new() };
+            near.into_iter().map(|n| filled(side, &self.ways[n])).fold(0.0, f64::max)
+        })
     }
 
     /// True when a way leads to another in line with it: nothing stands across between them.
@@ -150,10 +183,11 @@ impl Known<'_> {
     }
 }
 
-/// True when what opens lies between two sides of which one may be no more than the end of a row.
-fn is_held(opening: &Opening) -> bool {
-    let [low, high] = opening.held;
-    low.min(high) >= HELD_METRES[0] && low.max(high) >= HELD_METRES[1].max(HELD * opening.way.length())
+/// True when what opens lies between two sides of which one may be no more than the end of a row, be it that such is known there.
+fn is_held(opening: &Opening, are_ends: [bool; 2]) -> bool {
+    let is_long = |side: usize| opening.held[side] >= HELD_METRES[1].max(HELD * opening.way.length());
+    let is_end = |side: usize| opening.held[side] >= HELD_METRES[0] || are_ends[side];
+    is_long(0) && is_end(1) || is_end(0) && is_long(1)
 }
 
 /// True when it lies between the ends of two rows.

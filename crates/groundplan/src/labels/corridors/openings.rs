@@ -5,8 +5,8 @@ use crate::bits::{Bits, WORD, lowest};
 use crate::ends::{sorted, wider};
 use crate::labels::corridors::Strip;
 use crate::labels::junctions::shut;
-use crate::labels::rows::Row;
 use crate::labels::rows::sections::{BAY, WIDTH};
+use crate::labels::rows::{DEPTH, Row};
 use crate::labels::view::runs::{Run, runs};
 use crate::labels::view::turned::Turned;
 use crate::labels::ways::across::square_to;
@@ -36,15 +36,19 @@ const BESIDE: (f64, f64) = (0.1, 0.5);
 
 /// What opens into a way.
 pub struct Opening {
-    /// From that one's side as far as is free.
+    /// From that one's side as far as is free, or as it is looked into.
     pub way: Strip,
     /// Where that one's middle lies, along.
     pub middle: f64,
     /// Over so much of that each of its sides is held, metres, and over so much something stands there.
     pub held: [f64; 2],
     pub stands: [f64; 2],
+    /// At its corner on each side a row ends that is as deep as rows are.
+    pub ends_row: [bool; 2],
     /// It ends at a frontier: nothing stands there.
     pub is_frontier: bool,
+    /// It is free farther than it is looked into.
+    pub goes_on: bool,
 }
 
 /// From post to post along each direction, metres, where rows run along it: other than these nothing has bays.
@@ -55,7 +59,7 @@ pub fn pitches(views: &[Turned], rows: &[Row]) -> Vec<Option<f64>> {
 }
 
 /// What opens into a way from one side or the other, square to it, where these are the pitches of all directions. Of what may be one
-/// opening, whose middle was not seen, the parts come before the whole.
+/// opening the parts come before the whole, of which the middle was not seen, and both before what is wider by what corners hid.
 pub fn of(views: &[Turned], way: &Strip, pitches: &[Option<f64>], parameters: &Parameters) -> Vec<Opening> {
     let (view, pitch) = (&views[way.direction], pitches[way.direction]);
     let Some(other) = square_to(views, way.direction) else { return Vec::new() };
@@ -88,10 +92,23 @@ impl Passing<'_> {
         }
         let whole = runs(&deep, true).into_iter().filter(|run| !open.contains(run)).collect::<Vec<_>>();
         open.extend(whole);
+        for n in 0..open.len() {
+            let wider = self.up_to_corners(&columns, &depths, open[n]);
+            if !open.contains(&wider) {
+                open.push(wider);
+            }
+        }
         let opens = |&(from, to): &Run| self.is_wide_as_way(to - from) && self.has_corners(&columns, &depths, from..to);
         let open = open.into_iter().filter(opens);
-        open.filter_map(|(from, to)| self.opening(columns.start + from..columns.start + to, &depths[from..to]))
-            .collect()
+        open.filter_map(|(from, to)| self.opening(&columns, &depths, from..to)).collect()
+    }
+
+    /// What opens with what was seen less deep beside it, behind the corner of a row.
+    fn up_to_corners(&self, columns: &Range<usize>, depths: &[usize], (from, to): Run) -> Run {
+        let is_seen = |n: &usize| depths[*n] > 0 && !self.stands(columns.start + n, depths[*n]);
+        let before = (0..from).rev().take_while(is_seen).count();
+        let after = (to..depths.len()).take_while(is_seen).count();
+        (from - before, to + after)
     }
 
     /// So many cells, metres.
@@ -177,8 +194,20 @@ impl Passing<'_> {
             && is_corner(open.end..(open.end + near).min(depths.len()), all.end)
     }
 
-    /// What opens through some columns, where it is deep enough.
-    fn opening(&self, columns: Range<usize>, depths: &[usize]) -> Option<Opening> {
+    /// On which sides of some columns a row ends that is as deep as rows are.
+    fn ends_row(&self, all: &[usize], open: Range<usize>) -> [bool; 2] {
+        let is_end = |depth: &&usize| self.metres(**depth) <= END;
+        let before = all[..open.start].iter().rev().take_while(is_end).count();
+        let after = all[open.end..].iter().take_while(is_end).count();
+        let is_row = |count: usize, is_whole: bool| is_whole && (DEPTH.0..=DEPTH.1).contains(&self.metres(count));
+        [is_row(before, before < open.start), is_row(after, open.end + after < all.len())]
+    }
+
+    /// What opens through some of the way's columns, where it is deep enough.
+    fn opening(&self, all: &Range<usize>, depths: &[usize], open: Range<usize>) -> Option<Opening> {
+        let columns = all.start + open.start..all.start + open.end;
+        let ends_row = self.ends_row(depths, open.clone());
+        let depths = &depths[open];
         let deep: Vec<(usize, usize)> =
             columns.clone().zip(depths.iter().copied()).filter(|(_, depth)| self.is_deep(*depth)).collect();
         let cells = median(&deep.iter().map(|(_, depth)| *depth).collect::<Vec<_>>());
@@ -199,7 +228,9 @@ impl Passing<'_> {
             middle,
             held,
             stands,
+            ends_row,
             is_frontier: cells < self.most() && shut as f64 <= SHUT * deep.len() as f64,
+            goes_on: cells == self.most(),
         })
     }
 
