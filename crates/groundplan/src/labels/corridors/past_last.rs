@@ -2,6 +2,7 @@
 //! was not seen, and is no corridor.
 
 use super::barriers;
+use super::frontiers::ROW;
 use super::sided;
 use crate::ends::{around, holds, overlap, shared, sorted, wider};
 use crate::labels::beside::{Beside, placed};
@@ -64,8 +65,9 @@ pub fn led_on(
             let Some(end) = row_end(view, strip, side, from) else { continue };
             let [behind, beyond, past] = [end + sign * SAME, end + sign * OPEN, from + sign * (DEPTH.1 + BEHIND)];
             let is_before_floor = || {
+                let reached = reached_by(views, strip, &strips[aisle]);
                 is_open(view, strip, sorted([from - sign * SAME, beyond]))
-                    && is_row(view, strip, reached_by(views, strip, &strips[aisle]), end, [behind, beyond])
+                    && is_row(view, strip, reached, [from, end], [behind, beyond])
             };
             let is_before_unseen = || {
                 is_open(view, strip, sorted([from - sign * SAME, behind]))
@@ -139,14 +141,17 @@ fn reached_by(views: &[Turned], strip: &Strip, aisle: &Strip) -> [f64; 2] {
     wider(sorted(ends.map(|end| views[strip.direction].place(end)[1])), aisle.width())
 }
 
-/// True when what stands along an aisle at a strip's sides up to a place is a row before floor, and no wall with a gate in it:
-/// floor shows behind one of the sides, and where it does behind both, the row has an end or a gap.
-fn is_row(view: &Turned, strip: &Strip, aisle: [f64; 2], end: f64, [behind, beyond]: [f64; 2]) -> bool {
+/// True when what stands along an aisle at a strip's sides from one place to another is a row before floor, and no wall with a gate in
+/// it: floor shows behind one of the sides, and where it does behind both, the row has an end or a gap. Where it does behind neither the
+/// row is as deep as no wall, and behind one of them nothing stands: that was not seen.
+fn is_row(view: &Turned, strip: &Strip, aisle: [f64; 2], [from, end]: [f64; 2], [behind, beyond]: [f64; 2]) -> bool {
     let [low, high] = strip.across;
     let columns = view.columns(sorted([behind, beyond]));
     let is_floor = |[low, high]: [f64; 2]| view.mean_blocked(columns.clone(), low, high) <= TAKEN;
-    match [[low - BESIDE, low], [high, high + BESIDE]].map(is_floor) {
-        [false, false] => false,
+    let is_empty = |[low, high]: [f64; 2]| view.share_touched(columns.clone(), low, high) <= CLUTTER;
+    let beside = [[low - BESIDE, low], [high, high + BESIDE]];
+    match beside.map(is_floor) {
+        [false, false] => (end - from).abs() >= ROW && beside.into_iter().any(is_empty),
         [true, true] => {
             let back = view.columns(wider([end; 2], BACK));
             let [first, last] = shared(aisle, view.reach_across());
