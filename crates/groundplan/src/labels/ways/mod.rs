@@ -49,8 +49,12 @@ const IN_LINE: usize = 3;
 const SELDOM: f64 = 0.06;
 /// The same along a wall, where rows end and others go on to it.
 const AT_WALL: f64 = 0.001;
+/// What of a bay a frame in the wall behind it would hide, metres.
+const HIDDEN: f64 = 0.15;
 /// What is as wide as a bay is an empty one where more would be.
 const ANYWHERE: f64 = 0.4;
+/// The same of what leads through one row alone: what else is as wide there may be ways.
+const OF_ONE_ROW: f64 = 3.0;
 /// Posts leave so much of a bay, in pitches, or more.
 const ONE_BAY: f64 = 0.92;
 /// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
@@ -207,16 +211,25 @@ impl<'a> Asked<'a> {
         }
     }
 
-    /// True when it leads through all rows of its part between their ends and is just as wide as one bay, chance would open as many
-    /// at some place, and bars do not tell otherwise. Where something stands along their faces, as beams do, bays are closed.
+    /// True when it leads through all rows of its part between their ends, or through one that is a wall beside the others, and is just
+    /// as wide as one bay, chance would open as many at some place, and bars do not tell otherwise. Where something stands along their
+    /// faces, as beams do, bays are closed.
     fn is_likely_through_all(&self) -> bool {
-        let is_one_bay = || self.pitch().is_some_and(|pitch| (ONE_BAY * pitch..=pitch).contains(&self.width));
-        let expected = || empties::expected_bare(self.context.place, self.context.strips, self.n);
-        self.own.is_whole()
-            && self.own.is_within
-            && is_one_bay()
-            && expected().is_some_and(|expected| expected > ANYWHERE)
+        let place = self.context.place;
+        // Of a row by itself one gate is not told from another by that.
+        let is_one_of_several = || self.own.racks == 1 && place.rows_with(self.own.rows[0]).len() > 1;
+        let most = if self.own.is_whole() { ANYWHERE } else { OF_ONE_ROW };
+        let expected = || empties::expected_bare(place, self.context.strips, self.n);
+        self.own.is_within
+            && self.is_just_one_bay()
+            && (self.own.is_whole() || self.own.next.is_empty() && is_one_of_several())
+            && expected().is_some_and(|expected| expected > most)
             && !self.context.bars.tell(self.n)
+    }
+
+    /// True when it is just as wide as one bay.
+    fn is_just_one_bay(&self) -> bool {
+        self.pitch().is_some_and(|pitch| (ONE_BAY * pitch..=pitch).contains(&self.width))
     }
 
     /// True when it leads through some rows alone of those beside one another, and something tells of these: what leads past the
@@ -276,6 +289,11 @@ impl<'a> Asked<'a> {
         self.context.place.is_as_bays(self.own, self.width)
     }
 
+    /// True when it may be a bay of which one frame stands against the wall, and is not seen.
+    fn may_be_bay_at_wall(&self) -> bool {
+        self.may_be_bay() || self.context.place.is_as_bays(self.own, self.width - HIDDEN)
+    }
+
     /// How many as wide chance would open through as many rows, if it can be told.
     fn expected(&self) -> Option<f64> {
         *self.expected.get_or_init(|| empties::expected(self.context.place, self.context.strips, self.n))
@@ -303,7 +321,7 @@ impl<'a> Asked<'a> {
             let goes_past = place.sides_passed(next, self.strip, FARTHER);
             let is_walled = walled_sides(place.views[1], self.strip);
             (0..2).any(|side| is_walled[side] && goes_past[1 - side])
-                && (!self.may_be_bay() || self.expected().is_some_and(|expected| expected < AT_WALL))
+                && (!self.may_be_bay_at_wall() || self.expected().is_some_and(|expected| expected < AT_WALL))
                 && self.context.bars.are_bare(self.n)
         };
         let is_of_bays = || self.is_told_within() && self.may_be_bay();

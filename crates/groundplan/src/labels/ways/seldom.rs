@@ -1,6 +1,7 @@
 //! Whether rows of racks are open from aisle to aisle more often than chance makes: where the one of two racks back to back is
 //! empty the other seldom is as well, unless a way leads through both; and where hardly a shelf is empty no whole bay is.
 
+use crate::ends::holds;
 use crate::labels::rows::Row;
 use crate::labels::rows::shelves::{ENDS, Elsewhere, Shelves};
 use crate::labels::view::runs::Run;
@@ -20,6 +21,9 @@ const UNLIKELY: f64 = 0.01;
 const UNLIKELY_IN_FULL: f64 = 0.1;
 /// Where not each of the rows is open, chance makes fewer such places than this in all of them.
 const EXPECTED: f64 = 0.1;
+/// Ways as wide as bays are no more than so many of a row's places: where both of two racks are empty at more, they are as one. Where
+/// both are at more than so many nothing but legs was seen, and these tell.
+const BAYS: [f64; 2] = [0.15, 0.8];
 /// What is open of a half for less, metres, is between its goods.
 const SHELF: f64 = 0.5;
 /// Something stands along so much of the faces of solid rows, and no more than so much of their halves is open.
@@ -61,9 +65,11 @@ pub fn are_open<'a>(
         places += shelves.row.length() / width;
     }
     let expected = by_chance(open, half_open as f64, places);
+    let may_be_bay = may_be_bay();
     open_rows >= ROWS
+        && !(may_be_bay && half_open > 0 && holds(BAYS, open as f64 / places))
         && likely(open, expected) < UNLIKELY
-        && (open_rows == count || open >= SEVERAL && expected < EXPECTED && (half_open > 0 || !may_be_bay()))
+        && (open_rows == count || open >= SEVERAL && expected < EXPECTED && (half_open > 0 || !may_be_bay))
 }
 
 /// Rows side by side but for some places at which they are open.
