@@ -5,7 +5,7 @@
 use super::onward;
 use super::pieces;
 use super::stretches::{Borders, Candidate, Found, Held, beyond, depth, may_be_bay, ragged};
-use crate::ends::overlap;
+use crate::ends::{overlap, wider};
 use crate::grid::whole;
 use crate::labels::Evidence;
 use crate::labels::beside::Beside;
@@ -36,6 +36,10 @@ const BAY: f64 = pieces::BAY_WIDTH.1;
 const SHARED: f64 = 0.25;
 /// A way of which others leave less than this share is none.
 const MOST: f64 = 0.75;
+/// What stands over so much of a way's length farther within it than so much, metres, and over no more, across, parts it.
+const PARTED: f64 = 0.7;
+const WITHIN: f64 = 0.3;
+const THICK: f64 = 0.2;
 /// What lies beside a way is of it where no more than this share of it is not free.
 const REACHED: f64 = 0.05;
 
@@ -142,11 +146,22 @@ pub fn find(evidence: &Evidence, views: &[Turned], view: &Turned, known: &[Strip
     // is a part of the same space.
     let whole = |way: Strip| {
         let across = widened(view, &way);
-        (across[1] - across[0] <= parameters.labels_max_width).then_some(Strip { across, ..way })
+        let may_be = across[1] - across[0] <= parameters.labels_max_width && !is_parted_along(view, &way);
+        may_be.then_some(Strip { across, ..way })
     };
     let [sure, over, cut] =
         [all.split_off(known.len()), over.ways, cut.ways].map(|ways| ways.into_iter().filter_map(whole).collect());
     Ways { sure, over, cut, on: on.ways }
+}
+
+/// True when something stands all along a way within it, as what parts two racks back to back: what is free on either side is of
+/// these.
+fn is_parted_along(view: &Turned, way: &Strip) -> bool {
+    let columns = view.columns(way.along);
+    let [low, high] = wider(way.across, -WITHIN);
+    let rows = ((high - low - THICK) / view.cell).max(0.0) as usize;
+    let at = |n: usize| low + n as f64 * view.cell;
+    (0..rows).any(|n| view.share_touched(columns.clone(), at(n), at(n) + THICK) >= PARTED)
 }
 
 /// Ways that share no ground with one another, the best first.
