@@ -329,3 +329,28 @@ def test_aisles_lead_between_racks_of_which_no_more_than_posts_and_the_unknown_s
                 picture[face : face + 3, x - 1 : x + 2] = 0
     junctions = groundplan.survey(picture, resolution=RESOLUTION).of_kind("junction")
     assert sorted(junction["type"] for junction in junctions) == ["L"] * 4 + ["T"] * 4
+
+
+def drums_on_both_sides_of_a_mesh(gaps: float) -> npt.NDArray[np.uint8]:
+    """Three rows of drums 0.75 m wide, two side by side with a mesh between, of which a share was not hit."""
+    draws = np.random.default_rng(0)
+    width, rows, deep, aisle, cross = 600, 3, 56, 60, 72
+    picture = np.full((rows * deep + (rows + 1) * aisle + 40, width + 2 * cross + 40), 205, np.uint8)
+    picture[18:-18, 18:-18] = 0
+    picture[20:-20, 20:-20] = 254
+    y, x = np.mgrid[: picture.shape[0], : picture.shape[1]]
+    for low in (20 + aisle + row * (aisle + deep) for row in range(rows)):
+        columns = np.arange(20 + cross, 20 + cross + width)
+        picture[low + deep // 2, columns[draws.random(len(columns)) > gaps]] = 0
+        for middle in (low + 7, low + deep - 8):
+            for at in range(28 + cross, 12 + cross + width, 17):
+                off = np.hypot(y - middle, x - at)
+                picture[off <= 7.5] = 0
+                picture[off <= 6.2] = 205
+    return picture
+
+
+@pytest.mark.parametrize("gaps", [0.05, 0.2, 0.3])
+def test_between_goods_on_both_sides_of_a_mesh_no_aisle_leads(gaps: float) -> None:
+    aisles = groundplan.survey(drums_on_both_sides_of_a_mesh(gaps), resolution=RESOLUTION).of_kind("corridor")
+    assert sorted(aisle["width"] for aisle in aisles) == pytest.approx([3.05] * 4 + [3.5, 3.8], abs=0.15)

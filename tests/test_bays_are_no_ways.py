@@ -11,7 +11,7 @@ import pytest
 from _legs import Box, legs
 from _legs import hall as drawn
 from PIL import Image
-from zoo import Picture, walled
+from zoo import UNKNOWN, Picture, walled
 
 import groundplan
 
@@ -399,3 +399,76 @@ def test_a_bay_that_is_empty_in_all_half_empty_rows_is_no_way(seed: int) -> None
     types = sorted(junction["type"] for junction in survey.of_kind("junction"))
     # The way between the blocks, and those before the rows' heads.
     assert types == ["L"] * 4 + ["T"] * 6 + ["X"] * 2
+
+
+def two_racks(seed: int, rows: int, bays: int, bay: int, shares: tuple[float, float]) -> Picture:
+    """Rows of two racks on posts back to back; of all places a share is full on both sides, and a share on one."""
+    draws = np.random.default_rng(seed)
+    depth = 21
+    picture = walled(2 * END + bay * bays, (rows + 1) * AISLE + 2 * rows * depth)
+    for row in (20 + AISLE + n * (AISLE + 2 * depth) for n in range(rows)):
+        drawn_shares, side = draws.random(bays), draws.integers(0, 2, bays)
+        for number, rack in enumerate((row, row + depth)):
+            for post in range(bays + 1):
+                x = min(max(20 + END + post * bay - 1, 20 + END), 20 + END + bays * bay - 2)
+                picture[rack : rack + 2, x : x + 2] = picture[rack + depth - 2 : rack + depth, x : x + 2] = 0
+            full = (drawn_shares < shares[0]) | ((drawn_shares < sum(shares)) & (side == number))
+            for x in (20 + END + bay * np.flatnonzero(full)).tolist():
+                picture[rack + 1 : rack + depth - 1, x + 2 : x + bay - 2] = 0
+    return picture
+
+
+@pytest.mark.parametrize(
+    ("seed", "rows", "bays", "bay", "shares"),
+    [
+        (0, 8, 31, 50, (0.43, 0.19)),
+        (5, 8, 25, 56, (0.3, 0.2)),
+        (18, 7, 24, 48, (0.4, 0.12)),
+        (11, 10, 19, 49, (0.21, 0.34)),
+    ],
+)
+def test_where_both_of_two_racks_are_empty_at_every_third_place_these_are_no_ways(
+    seed: int, rows: int, bays: int, bay: int, shares: tuple[float, float]
+) -> None:
+    assert ways_across(two_racks(seed, rows, bays, bay, shares)) == pytest.approx(HEADS, abs=0.15)
+
+
+def up_to_a_wall(seed: int, off: int, way: int) -> Picture:
+    """Seven rows of bays of 2.3 m whose first frames lean on a wall, unseen; a way after five bays, one past the last.
+
+    Goods stand in few bays, and of the first ones in that of the fourth row.
+    """
+    draws = np.random.default_rng(seed)
+    rows, bays, bay, depth, aisle, at = 7, 16, 46, 21, 50, 5
+    picture = walled(bay * bays + way + 80, (rows + 1) * aisle + rows * depth)
+    for n, row in enumerate(20 + aisle + n * (aisle + depth) for n in range(rows)):
+        for post in range(1, bays + 2):
+            x = 20 + off + (post * bay if post <= at else (post - 1) * bay + way)
+            picture[row : row + 2, x - 1 : x + 1] = picture[row + depth - 2 : row + depth, x - 1 : x + 1] = 0
+        full = draws.random(bays) < 0.15
+        full[0] = n == rows // 2
+        for place in np.flatnonzero(full).tolist():
+            x = 20 + off + place * bay + (way if place >= at else 0)
+            picture[row + 1 : row + depth - 1, x + 3 : x + bay - 3] = 0
+    return picture
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize(("off", "way"), [(2, 86), (3, 104)])
+def test_empty_bays_between_the_first_posts_and_a_wall_are_no_way_where_goods_stand_in_one(
+    off: int, way: int, seed: int
+) -> None:
+    survey = groundplan.survey(up_to_a_wall(seed, off, way), resolution=RESOLUTION)
+    kinds = [junction["type"] for junction in survey.of_kind("junction") if junction["type"] != "end"]
+    assert sorted(kinds) == ["L"] * 2 + ["T"] * 8 + ["X"] * 6
+
+
+@pytest.mark.parametrize("gates", [2, 4, 5])
+def test_gates_as_wide_as_a_bay_through_a_full_row_by_itself_are_ways_however_many(gates: int) -> None:
+    bay, bays = 54, 18
+    picture, (row,) = hall(1, 22, bays * bay + 2)
+    row[2:-2, 2:-2] = UNKNOWN
+    for gate in np.linspace(2, bays - 3, gates).round().astype(int).tolist():
+        row[:, gate * bay + 2 : (gate + 1) * bay] = 254
+        row[:, gate * bay : gate * bay + 2] = row[:, (gate + 1) * bay : (gate + 1) * bay + 2] = 0
+    assert len(ways_across(picture)) == 2 + gates

@@ -127,3 +127,26 @@ def test_a_way_along_a_wall_leads_over_no_row(recess: int) -> None:
     along = [way for way in survey.of_kind("corridor") if abs(np.mean(way["axis"], axis=0)[0] - wall) < 1]
     beyond = (len(picture) - low - DEPTH) * RESOLUTION
     assert all(min(y for _, y in way["axis"]) > beyond or max(y for _, y in way["axis"]) < beyond for way in along)
+
+
+def behind_corners(rows: int, near: int, slope: float) -> Picture:
+    """A hall of rows of 30 m, of whose last aisle 2.2 m were seen from either end, and less behind a row's corners."""
+    length, depth, seen, wall = 600, 25, 44, 96
+    picture = walled(length + 2 * CROSS, rows * depth + (rows + 1) * AISLE)
+    left, right = 20 + CROSS, 20 + CROSS + length
+    for low in (20 + AISLE + row * (AISLE + depth) for row in range(rows)):
+        picture[low : low + depth, left:right] = 0
+        picture[low + 3 : low + depth - 3, left + 3 : right - 3] = UNKNOWN
+    last = 20 + rows * (AISLE + depth)
+    for y in range(AISLE):
+        free = min(seen, near + round(y / slope))
+        picture[last + y, left + free : right - free] = UNKNOWN
+    picture[last - 3 : last, left + near : right - near] = UNKNOWN
+    picture[-20:, left + wall : right - wall] = UNKNOWN
+    return picture
+
+
+@pytest.mark.parametrize("rows", [2, 3])
+@pytest.mark.parametrize(("near", "slope"), [(10, 0.4), (12, 0.7), (12, 0.9)])
+def test_an_aisle_opens_though_behind_the_corners_of_a_row_less_was_seen(near: int, slope: float, rows: int) -> None:
+    assert types(behind_corners(rows, near, slope)) == ["L"] * 4 + ["T"] * 2 * (rows - 1)

@@ -62,8 +62,9 @@ def test_where_something_stands_behind_the_last_row_there_is_no_way(blocks: int)
     picture = hall(blocks, slope=1.0)
     back = 20 + 2 * AISLE + 2 * DEPTH
     for n in range(blocks):
-        middle = 20 + CROSS + n * (BLOCK + CROSS) + BLOCK // 2
-        picture[back + 20 : back + AISLE, middle - 30 : middle - 26] = 0
+        left = 20 + CROSS + n * (BLOCK + CROSS)
+        for corner in (left + 18, left + BLOCK - 22):
+            picture[back + 14 : back + AISLE, corner : corner + 4] = 0
     survey = groundplan.survey(picture, resolution=RESOLUTION)
     assert len([way for way in survey.of_kind("corridor") if way["width"] < 3.3]) == 2
 
@@ -118,7 +119,7 @@ def beyond_rows(seen: int) -> Picture:
     for left in lefts:
         for low in (first, second, third, fourth):
             picture[low : low + DEPTH, left : left + BLOCK] = 0
-    picture[first + DEPTH : third, lefts[0] + 44 : lefts[1] + BLOCK - 44] = 205
+    picture[first + DEPTH : third, lefts[0] + 20 : lefts[1] + BLOCK - 20] = 205
     for left in lefts:
         for low, high in ((first + 3, first + DEPTH), (second + 3, second + DEPTH - 3), (third, third + DEPTH - 3)):
             picture[low:high, left + 3 : left + BLOCK - 3] = 205
