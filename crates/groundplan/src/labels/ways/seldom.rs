@@ -23,7 +23,7 @@ const UNLIKELY_IN_FULL: f64 = 0.1;
 const EXPECTED: f64 = 0.1;
 /// Ways as wide as bays are no more than so many of a row's places: where both of two racks are empty at more, they are as one. Where
 /// both are at more than so many nothing but legs was seen, and these tell.
-const BAYS: [f64; 2] = [0.15, 0.8];
+const BAYS: [f64; 2] = [0.2, 0.8];
 /// What is open of a half for less, metres, is between its goods.
 const SHELF: f64 = 0.5;
 /// Something stands along so much of the faces of solid rows, and no more than so much of their halves is open.
