@@ -601,3 +601,18 @@ def test_a_way_that_guards_narrow_is_one_through_full_rows_whatever_wider_ways_t
     survey = groundplan.survey(guarded(rows, 100, 37, 3), resolution=RESOLUTION)
     crossings = [junction["type"] for junction in survey.of_kind("junction")]
     assert sorted(crossings) == ["L"] * 4 + ["T"] * (4 + 2 * (rows - 1)) + ["X"] * (2 * (rows - 1))
+
+
+def test_a_line_through_the_middle_of_a_way_makes_no_narrower_one_of_it() -> None:
+    # Shelves between aisles of 1.4 m; through each leads one way of 4.3 m; where some have their middles others begin.
+    starts, gate, aisle, depth = [200, 600, 243, 643, 200, 600, 243], 86, 28, 20
+    picture = walled(1120, len(starts) * depth + (len(starts) + 1) * aisle)
+    for n, start in enumerate(starts):
+        row = picture[20 + aisle + n * (aisle + depth) :][:depth, 80:1080]
+        row[:] = OCCUPIED
+        row[2:-2, 2:-2] = UNKNOWN
+        row[:, start - 2 : start + gate + 2] = OCCUPIED
+        row[:, start : start + gate] = FREE
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    widths = sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C"))
+    assert widths == pytest.approx([3.1] * 2 + [4.3] * len(starts), abs=0.15)

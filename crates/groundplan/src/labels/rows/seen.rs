@@ -60,6 +60,12 @@ impl Seen<'_> {
         self.columns.gap_about(self.along(across)).map(|ends| self.across(ends))
     }
 
+    /// The way through it in which a place lies, across the direction that crosses it.
+    pub fn way_about(&self, across: f64) -> Option<[f64; 2]> {
+        let along = self.along(across);
+        self.ways.iter().find(|way| holds(**way, along)).map(|way| self.across(*way))
+    }
+
     /// What lies so along it, across the direction that crosses it.
     fn across(&self, ends: [f64; 2]) -> [f64; 2] {
         let [view, other] = self.views;

@@ -49,10 +49,18 @@ pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a 
     let reaching: Vec<Row> = rows.iter().map(|row| walled::up_to_walls(views, strips, &placed, widest, row)).collect();
     let least = evidence.parameters.labels_min_width;
     // A way that is known cuts the row that it leads through.
-    let uncut = uncut(views, rows);
-    let whole = uncut.as_ref().map(|rows| seen(evidence, look, views, strips, rows, rows));
-    let narrow = whole.as_ref().map(|rows| narrowed::between_uprights(strips, rows, &placed, [least, widest]));
-    let all_known = narrow.map_or(Cow::Borrowed(strips), Cow::Owned);
+    let are_racked = |row: &&Row| views[row.direction].pitch.is_some();
+    let (racked, others) = rows.iter().filter(|row| row.between.is_some()).partition(are_racked);
+    let [racked, others]: [Option<Vec<Row>>; 2] = [uncut(racked), uncut(others)];
+    let seen_whole = |rows| seen(evidence, look, views, strips, rows, rows);
+    let [whole, whole_others] = [&racked, &others].map(|rows| rows.as_deref().map(seen_whole));
+    let mut all_known = Cow::Borrowed(strips);
+    for rows in [&whole, &whole_others].into_iter().flatten() {
+        all_known = Cow::Owned(narrowed::whole(&all_known, rows, &placed, widest));
+    }
+    if let Some(rows) = &whole {
+        all_known = Cow::Owned(narrowed::between_uprights(&all_known, rows, &placed, [least, widest]));
+    }
     let strips = &*all_known;
     let mut through = Through::new(views, strips, seen(evidence, look, views, strips, rows, &reaching));
     // What leads past rows at a wall, or through a row that is a wall itself from one wall to another, though it is as wide as
@@ -139,12 +147,11 @@ pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a 
     Gates { known: all_known, ways, as_bays: in_line(as_bays) }
 }
 
-/// The rows, of directions of which bays are known, as if no way that is known cut them, none of them up to the walls beyond
-/// its ends; nothing where none is cut.
-fn uncut(views: &[Turned], rows: &[Row]) -> Option<Vec<Row>> {
+/// Rows as if no way that is known cut them, none of them up to the walls beyond its ends; nothing where none is cut.
+fn uncut(rows: Vec<&Row>) -> Option<Vec<Row>> {
     let mut whole: BTreeMap<_, Row> = BTreeMap::new();
     let mut is_cut = false;
-    for row in rows.iter().filter(|row| row.between.is_some() && views[row.direction].pitch.is_some()) {
+    for row in rows {
         let known = whole.entry((row.direction, row.between)).or_insert_with(|| row.clone());
         is_cut |= known != row;
         (known.along, known.across) = (both(known.along, row.along), both(known.across, row.across));

@@ -44,6 +44,30 @@ pub fn between_uprights(strips: &[Strip], rows: &[Seen], placed: &[Beside], [lea
     strips.iter().zip(most).map(narrow).collect()
 }
 
+/// The strips; what leads through one row alone is the whole of the way there from upright to upright, where it is part of one: a line
+/// that lies in its middle is of something else.
+pub fn whole(strips: &[Strip], rows: &[Seen], placed: &[Beside], widest: f64) -> Vec<Strip> {
+    let mut passed = vec![0; strips.len()];
+    let mut ways: Vec<Option<[f64; 2]>> = vec![None; strips.len()];
+    for seen in rows {
+        for n in leading_across(seen.views, placed, seen.row, widest) {
+            let strip = &strips[n];
+            let lead = Lead { views: seen.views, row: seen.row, strip };
+            if lead.is_across() {
+                passed[n] += 1;
+                ways[n] = seen.way_about(strip.middle()).filter(|way| {
+                    way[1] - way[0] > strip.width() + WIDER && lead.is_within() && !seen.is_as_bays(*way)
+                });
+            }
+        }
+    }
+    let whole = |((strip, way), passed): ((&Strip, Option<[f64; 2]>), usize)| {
+        let across = way.filter(|_| passed == 1).unwrap_or(strip.across);
+        Strip { across, ..strip.clone() }
+    };
+    strips.iter().zip(ways).zip(passed).map(whole).collect()
+}
+
 /// What of a gap between uprights is a strip's: all of it, if that is little wider, about the strip's own middle, if that is no
 /// farther off: lines are known more closely than where uprights end.
 fn own_of(strip: &Strip, gap: [f64; 2]) -> [f64; 2] {
