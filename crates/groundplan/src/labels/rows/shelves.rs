@@ -49,6 +49,13 @@ impl Shelves {
         common(&self.halves[0], &self.halves[1])
     }
 
+    /// How long it is from the first to the last place at which something of it was seen, metres.
+    pub fn seen(&self, view: &Turned) -> f64 {
+        let seen = self.halves.iter().chain(self.faces(view)).flatten();
+        let [from, to] = seen.fold([self.count(), 0], |all, run| [all[0].min(run.0), all[1].max(run.1)]);
+        to.saturating_sub(from) as f64 * view.cell
+    }
+
     /// True of what is open up to an end of the row.
     pub fn is_end(&self, (from, to): Run) -> bool {
         from == 0 || to == self.count()

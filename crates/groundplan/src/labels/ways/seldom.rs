@@ -19,11 +19,14 @@ const ROWS: usize = 2;
 const UNLIKELY: f64 = 0.01;
 /// The same where each of the rows is open at as many, which chance seldom makes.
 const UNLIKELY_IN_FULL: f64 = 0.1;
-/// Where not each of the rows is open, chance makes fewer such places than this in all of them.
-const EXPECTED: f64 = 0.1;
-/// Ways as wide as bays are no more than so many of a row's places: where both of two racks are empty at more, they are as one. Where
-/// both are at more than so many nothing but legs was seen, and these tell.
+/// What is narrower than the aisles beside it is a way where as many places are as unlikely as this.
+const NARROWER: f64 = 1e-6;
+/// Where not each of the rows is open, they are so at so many times as many places as chance makes.
+const TIMES: f64 = 30.0;
+/// Ways as wide as bays are no more than so many of a row's places, or so many where more than so many lead through each row: where
+/// both of two racks are empty at more, they are as one. Where both are at more than so many nothing but legs was seen, and these tell.
 const BAYS: [f64; 2] = [0.2, 0.8];
+const MANY: (f64, usize) = (0.1, 3);
 /// What is open of a half for less, metres, is between its goods.
 const SHELF: f64 = 0.5;
 /// Something stands along so much of the faces of solid rows, and no more than so much of their halves is open.
@@ -43,6 +46,7 @@ pub fn are_open<'a>(
     view: &Turned,
     rows: impl Iterator<Item = &'a Shelves>,
     width: f64,
+    is_as_aisles: bool,
     may_be_bay: impl FnOnce() -> bool,
 ) -> bool {
     let (mut half_open, mut open, mut open_rows, mut places) = (0, 0, 0, 0.0);
@@ -62,14 +66,17 @@ pub fn are_open<'a>(
         open_rows += usize::from(own > 0);
         open += own;
         half_open += shelves.halves.iter().map(|half| as_wide(half).saturating_sub(own)).sum::<usize>();
-        places += shelves.row.length() / width;
+        places += shelves.seen(view) / width;
     }
     let expected = by_chance(open, half_open as f64, places);
     let may_be_bay = may_be_bay();
+    let least = if open > MANY.1 * count { MANY.0 } else { BAYS[0] };
+    let unlikely = if is_as_aisles { UNLIKELY } else { NARROWER };
     open_rows >= ROWS
-        && !(may_be_bay && half_open > 0 && holds(BAYS, open as f64 / places))
-        && likely(open, expected) < UNLIKELY
-        && (open_rows == count || open >= SEVERAL && expected < EXPECTED && (half_open > 0 || !may_be_bay))
+        && !(may_be_bay && half_open > 0 && holds([least, BAYS[1]], open as f64 / places))
+        && likely(open, expected) < unlikely
+        && (is_as_aisles && open_rows == count
+            || open >= SEVERAL && TIMES * expected < open as f64 && (half_open > 0 || !may_be_bay))
 }
 
 /// Rows side by side but for some places at which they are open.
@@ -118,14 +125,29 @@ impl<'a> Rest<'a> {
         self.halves > 0.0 && self.free <= SOLID.1 * self.halves && stands() >= SOLID.0 * self.halves
     }
 
-    /// True when each row has as many places, as where a way leads through each, and so little else of their halves is open
-    /// that as many would hardly be by chance: no shelves are empty there.
+    /// True when each row has as many places, as where a way leads through each, or as nearly as many as chance seldom deals
+    /// them, and so little else of their halves is open that as many would hardly be by chance: no shelves are empty there.
     pub fn is_full(&self) -> bool {
         // Half a place more is open and one more is there, as so few tell little.
         let share = (self.free + 0.5 * self.width) / (self.halves + self.width);
         let by_chance = self.halves / 2.0 / self.width * share * share;
-        self.rows.iter().all(|row| row.open == self.rows[0].open) && likely(self.open(), by_chance) < UNLIKELY_IN_FULL
+        self.are_as_many() && likely(self.open(), by_chance) < UNLIKELY_IN_FULL
     }
+
+    fn are_as_many(&self) -> bool {
+        let [least, most] = self.rows.iter().fold([usize::MAX, 0], |[a, b], row| [a.min(row.open), b.max(row.open)]);
+        let are_even = || dealt_so_evenly(self.open(), self.rows.len()) < UNLIKELY_IN_FULL;
+        least == most || least > 0 && most - least == 1 && are_even()
+    }
+}
+
+/// How likely it is that of places dealt to rows by chance, each row as likely as another, none has two more than another.
+fn dealt_so_evenly(places: usize, rows: usize) -> f64 {
+    let (least, more) = (places / rows, places % rows);
+    let factorial = |n: usize| (1..=n).map(|n| n as f64).product::<f64>();
+    let which = factorial(rows) / factorial(more) / factorial(rows - more);
+    let each = libm::pow(factorial(least), rows as f64) * libm::pow((least + 1) as f64, more as f64);
+    which * factorial(places) / each / libm::pow(rows as f64, places as f64)
 }
 
 /// At how many of all places both racks are expected to be empty by chance, where both are at so many and one of them is at so
