@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from _legs import Box, put_posts
 from _legs import hall as drawn
-from zoo import walled
+from zoo import OCCUPIED, UNKNOWN, Picture, walled
 
 import groundplan
 from groundplan import simulate
@@ -336,3 +336,62 @@ def test_the_two_aisles_of_a_row_meet_before_a_corner_of_the_hall(free: int) -> 
     boxes: list[Box] = [(4, 3, 40 - free, 5), (4, 8, 31, 10), (4, 13, 31, 15), (34, 8, 40, 18)]
     survey = groundplan.survey(drawn(40, 18, iter(boxes)), resolution=0.05)
     assert sorted(label["type"] for label in survey.of_kind("junction")) == ["L"] * 5 + ["T"] * 4
+
+
+def before_a_corner(seed: int) -> Picture:
+    """Rows on posts, in bays of 3.1 m and 2.9 m from the walls.
+
+    Two are full for the most part, and two, nearly empty, begin before a corner of the hall.
+    """
+    draws = np.random.default_rng(seed)
+    bay, bays, depth, way = 62, 12, 38, 58
+    picture = walled(2 * way + bays * bay, 5 * way + 4 * depth)
+    left, low = 20 + 5 * bay, 10 + 3 * way + 2 * depth
+    picture[low:, :left] = UNKNOWN
+    picture[low : low + 2, 20 : left + 2] = picture[low:, left : left + 2] = OCCUPIED
+    for row, (first, full) in enumerate([(0, 0.8), (0, 0.8), (5, 0.08), (5, 0.08)]):
+        rack = picture[20 + way + row * (way + depth) :][:depth]
+        for x in (20 + way + number * bay for number in range(first, bays + 1)):
+            rack[:3, x - 1 : x + 2] = rack[-3:, x - 1 : x + 2] = OCCUPIED
+        for x in (20 + way + number * bay for number in range(first, bays)):
+            if draws.random() < full:
+                rack[1:-1, x + 3 : x + bay - 2] = OCCUPIED
+    return picture
+
+
+@pytest.mark.parametrize("seed", [3, 5])
+def test_a_way_along_the_wall_past_rows_of_posts_is_told_by_one_as_wide_past_full_rows(seed: int) -> None:
+    survey = groundplan.survey(before_a_corner(seed), resolution=0.05)
+    assert [junction for junction in survey.of_kind("junction") if junction["type"] == "end"] == []
+
+
+def along_a_turned_wall(seed: int, lean: float) -> Picture:
+    """Half-empty rows in two blocks with frames at their ends and beside many a bay, 2 m before a wall.
+
+    Drift has turned the wall and the ends by so many pixels from row to row, 4.8 m.
+    """
+    draws = np.random.default_rng(seed)
+    rows, bay, bays, depth, aisle, end, way = 8, 66, 6, 30, 66, 62, 56
+    length = 2 * bays * bay + way
+    picture = walled(2 * end + length + 44, (rows + 1) * aisle + rows * depth)
+    for y in range(18, picture.shape[0] - 18):
+        x = int(20 + end + length + 40 + lean * (y - 20) / (aisle + depth) - lean * rows / 2)
+        picture[y, x : x + 3], picture[y, x + 3 :] = OCCUPIED, UNKNOWN
+    for row in range(rows):
+        rack = picture[20 + aisle + row * (aisle + depth) :][:depth]
+        for block in range(2):
+            left = 20 + end + block * (bays * bay + way) + lean * (row + 0.5 - rows / 2) * (block + 1) / 2
+            for number, x in enumerate(round(left + bay * number) for number in range(bays + 1)):
+                rack[:3, x - 1 : x + 2] = rack[-3:, x - 1 : x + 2] = OCCUPIED
+                if number in (0, bays) or draws.random() < 0.4:
+                    rack[:, x - 1 : x + 1] = OCCUPIED
+                if number < bays and draws.random() < 0.35:
+                    rack[1:-1, x + 3 : x + bay - 3] = OCCUPIED
+    return picture
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("lean", [2.0, 2.5])
+def test_aisles_meet_the_way_along_a_wall_that_drift_has_turned(lean: float, seed: int) -> None:
+    survey = groundplan.survey(along_a_turned_wall(seed, lean), resolution=0.05)
+    assert [junction for junction in survey.of_kind("junction") if junction["type"] == "end"] == []

@@ -113,6 +113,13 @@ impl Strip {
     pub fn middle(&self) -> f64 {
         f64::midpoint(self.across[0], self.across[1])
     }
+
+    /// Half of it, at one of its sides.
+    pub fn half(&self, side: usize) -> Self {
+        let mut half = self.clone();
+        half.across[1 - side] = self.middle();
+        half
+    }
 }
 
 /// A corridor that meets no other is at least so many times as long as wide, and so long, metres.

@@ -32,6 +32,8 @@ const OTHERS: usize = 3;
 const IN_LINE: f64 = 0.5;
 /// A way is told from an empty bay by its sides when these are so many times as likely those of the one as those of the other.
 const LIKELIER: f64 = 10.0;
+/// Where racks end is sought in such steps, metres.
+const STEP: f64 = 0.1;
 
 /// Which of some strips lie between bars, from one on; of all the places are known that they lead through.
 pub fn are_between(evidence: &Evidence, look: &Look, places: &[Place], strips: &[Strip], first: usize) -> Vec<bool> {
@@ -188,9 +190,19 @@ impl<'a> Bars<'a> {
         let own = &self.place.passing[n];
         let Some(first) = self.place.first_of(own).filter(|_| !own.is_within) else { return false };
         let [ends, bays] = self.ends_and_bays(first);
-        let inner = |row: usize| self.place.rows[row].0.inner(self.sides(n, row));
-        let is_barred = |&row: &usize| self.row(row).columns.is_closed_at(inner(row));
-        bays.closed == 0 && ends.closed > ends.open && own.rows.iter().all(is_barred)
+        bays.closed == 0 && ends.closed > ends.open && self.are_before_bars(n, 0.0)
+    }
+
+    /// True when all rows that one of the strips passes through end at bars, no farther before it than so much, metres.
+    pub fn are_before_bars(&self, n: usize, off: f64) -> bool {
+        let is_barred = |&row: &usize| {
+            let sides = self.sides(n, row);
+            let inner = self.place.rows[row].0.inner(sides);
+            let inwards = if inner > f64::midpoint(sides[0], sides[1]) { STEP } else { -STEP };
+            let places = (0..=(off / STEP) as usize).map(|step| inner + step as f64 * inwards);
+            places.into_iter().any(|place| self.row(row).columns.is_closed_at(place))
+        };
+        self.place.passing[n].rows.iter().all(is_barred)
     }
 
     /// True when no bar stands at a side of what one of the strips passes through, though bars end the rows and do not stand
@@ -202,6 +214,13 @@ impl<'a> Bars<'a> {
     /// True when something of the rows beside one of the strips stands where it would lead through them.
     pub fn reach_into(&self, n: usize) -> bool {
         !self.place.passing[n].next.iter().all(|&row| self.row(row).columns.is_bare(self.sides(n, row)))
+    }
+
+    /// True when something of them stands in the half of it that lies at one of its sides.
+    pub fn reach_into_half(&self, n: usize, side: usize) -> bool {
+        let half = self.strips[n].half(side);
+        let sides = |row: usize| Lead { views: self.place.views, row: &self.place.rows[row].0, strip: &half }.sides();
+        !self.place.passing[n].next.iter().all(|&row| self.row(row).columns.is_bare(sides(row)))
     }
 
     /// True when nothing of the rows that one of the strips passes through stands in it.

@@ -15,6 +15,7 @@ use crate::labels::rows::sections::{Columns, Free, WIDTH};
 use crate::labels::rows::{self, Row};
 use crate::labels::view::look::Look;
 use crate::labels::view::turned::Turned;
+use crate::labels::ways::{walled, widths::are_alike};
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 
@@ -66,10 +67,33 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], mut stri
         !strip.is_short()
             && (sided::is_sided(&views[strip.direction], strip) || led::is_before_wall(views, strip, &strips, &placed))
     };
+    let past_ends: Vec<bool> = crossed.iter().map(|rows| !rows.is_empty() && lead_past_ends(rows)).collect();
     let left = |(strip, crossed): (&Strip, Vec<Crossed>)| {
         if crossed.is_empty() && is_alone(strip) { vec![strip.clone()] } else { ways(strip, crossed) }
     };
-    strips.iter().zip(crossed).flat_map(left).collect()
+    let left: Vec<Vec<Strip>> = strips.iter().zip(crossed).map(left).collect();
+    // What leads past rows' ends along a wall, as wide as what is told to lead past those of others, does so too.
+    let mut told: Vec<Vec<f64>> = vec![Vec::new(); views.len()];
+    for n in (0..strips.len()).filter(|&n| past_ends[n] && !left[n].is_empty()) {
+        told[strips[n].direction].push(strips[n].width());
+    }
+    for widths in &mut told {
+        widths.sort_by(f64::total_cmp);
+    }
+    let is_told = |n: usize| {
+        let (own, widths) = (strips[n].width(), &told[strips[n].direction]);
+        let first = widths.partition_point(|width| *width < own && !are_alike(*width, own));
+        past_ends[n]
+            && widths.get(first).is_some_and(|width| are_alike(*width, own))
+            && walled::side(&views[strips[n].direction], &strips[n]).is_some()
+    };
+    let again = |n: usize| if left[n].is_empty() && is_told(n) { vec![strips[n].clone()] } else { left[n].clone() };
+    (0..strips.len()).flat_map(again).collect()
+}
+
+/// True when a strip leads past the ends of all rows that it crosses, and may be a way there.
+fn lead_past_ends(crossed: &[Crossed]) -> bool {
+    crossed.iter().all(|row| row.at_end() && row.way)
 }
 
 /// True when a strip leads on between two sides for longer than a row is deep, without a way that crosses it: no bays do.
@@ -341,7 +365,7 @@ fn cross(
 /// A strip's pieces between the rows that it has no way through.
 fn ways(strip: &Strip, mut crossed: Vec<Crossed>) -> Vec<Strip> {
     let expected = by_chance(&crossed);
-    let are_ends = crossed.iter().all(|row| row.at_end() && row.way);
+    let are_ends = lead_past_ends(&crossed);
     let least = if are_ends { AT_ENDS } else { EXPECTED.1 };
     let is_told = || are_ends && is_long_before(strip, &crossed) || are_barred(&crossed);
     if strip.bays && expected >= least && !is_told() {

@@ -31,7 +31,7 @@ use super::rows::sections::{BAY, WIDTH, is_as_bays};
 use super::rows::{DEPTH, SHORTEST};
 use super::view::look::Look;
 use super::view::turned::Turned;
-use crate::ends::{shared, sorted, wider};
+use crate::ends::{shared, wider};
 use alone::Alone;
 use bars::Bars;
 use passing::{Passing, Place};
@@ -55,12 +55,11 @@ const HIDDEN: f64 = 0.15;
 const ANYWHERE: f64 = 0.4;
 /// The same of what leads through one row alone: what else is as wide there may be ways.
 const OF_ONE_ROW: f64 = 3.0;
-/// Posts leave so much of a bay, in pitches, or more.
+/// Posts leave so much of a bay, in pitches, or more; and of several bays in line no goods all leave a part as small.
 const ONE_BAY: f64 = 0.92;
-/// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
-const WALL: f64 = 0.9;
-const TAKEN: f64 = 0.2;
-const BEYOND: f64 = 0.6;
+const PART: f64 = 0.8;
+/// Drift that turns a wall moves the ends of the rows before it against each other by so much, metres.
+const TURNED: f64 = 1.0;
 
 /// The strips without those that are empty bays of the rows that they lead through, and without the bays that ways lead on over.
 ///
@@ -251,7 +250,7 @@ impl<'a> Asked<'a> {
         let is_before_wall = || {
             self.own.rows.len() == 1
                 && !self.own.is_led_on
-                && walled_sides(self.context.place.views[1], self.strip).contains(&true)
+                && walled::sides(self.context.place.views[1], self.strip).contains(&true)
         };
         let may_lie = || self.pitch().is_none() || self.may_be_bay();
         let is_as_bays_lie = || {
@@ -319,7 +318,7 @@ impl<'a> Asked<'a> {
         let place = self.context.place;
         let is_at_wall = || {
             let goes_past = place.sides_passed(next, self.strip, FARTHER);
-            let is_walled = walled_sides(place.views[1], self.strip);
+            let is_walled = walled::sides(place.views[1], self.strip);
             (0..2).any(|side| is_walled[side] && goes_past[1 - side])
                 && (!self.may_be_bay_at_wall() || self.expected().is_some_and(|expected| expected < AT_WALL))
                 && self.context.bars.are_bare(self.n)
@@ -330,13 +329,24 @@ impl<'a> Asked<'a> {
             && (is_at_wall() || place.goes_past(next, self.strip, FARTHER) && !is_of_bays())
     }
 
-    /// True when it leads past the ends of several rows, and nothing of those beside reaches into it, or those before it end at
-    /// bars: of a row that goes on past it the bays are empty where they end, and it goes on no farther than the way.
+    /// True when it leads past the ends of several rows, and nothing of those beside reaches into it, or no farther than a wall that
+    /// drift has turned comes nearer to their ends, or those before it end at bars: of a row that goes on past it the bays are empty
+    /// where they end, and it goes on no farther than the way.
     fn is_past_ends(&self) -> bool {
         let bars = &self.context.bars;
         let goes_past = |&row: &usize| self.context.place.goes_past(row, self.strip, FARTHER);
         let is_barred = || bars.end_rows_before(self.n) && self.own.next.iter().all(goes_past);
-        self.own.rows.len() > 1 && !self.own.is_within && (!bars.reach_into(self.n) || is_barred())
+        let is_narrower_than_bays = || self.pitch().is_some_and(|pitch| self.width <= PART * pitch);
+        let is_along_turned_wall = || {
+            self.own.rows.len() >= IN_LINE
+                && is_narrower_than_bays()
+                && walled::side(self.context.place.views[1], self.strip)
+                    .is_some_and(|side| !bars.reach_into_half(self.n, side))
+                && bars.are_before_bars(self.n, TURNED)
+        };
+        self.own.rows.len() > 1
+            && !self.own.is_within
+            && (!bars.reach_into(self.n) || is_barred() || is_along_turned_wall())
     }
 
     /// True when its width is no bay's, or chance would hardly open its rows so. Ways past the rows' ends are as wide as the hall
@@ -379,15 +389,4 @@ impl<'a> Asked<'a> {
     fn is_closed(&self) -> bool {
         *self.is_closed.get_or_init(|| closed::is_way(self.context.place, self.context.strips, self.own, self.width))
     }
-}
-
-/// Along which of a strip's sides a wall runs from end to end.
-fn walled_sides(view: &Turned, strip: &Strip) -> [bool; 2] {
-    let columns = view.columns(strip.along);
-    [0, 1].map(|n| {
-        let side = strip.across[n];
-        let ends = sorted([side, side + [-BEYOND, BEYOND][n]]);
-        let taken = view.some_blocked(columns.clone(), ends[0], ends[1]);
-        taken.iter().filter(|share| **share >= TAKEN).count() as f64 >= WALL * taken.len() as f64
-    })
 }

@@ -2,13 +2,38 @@
 
 use super::across::{crossing, leading_across};
 use crate::bits::Bits;
-use crate::ends::holds;
+use crate::ends::{holds, sorted};
 use crate::labels::beside::Beside;
 use crate::labels::corridors::Strip;
 use crate::labels::rows::Row;
 use crate::labels::rows::sections::WIDTH;
 use crate::labels::view::turned::Turned;
 use std::ops::Range;
+
+/// A wall runs along a side where over this share of it so much of what lies so far beyond it, metres, is not free.
+const WALL: f64 = 0.9;
+const TAKEN: f64 = 0.2;
+const BEYOND: f64 = 0.6;
+
+/// Along which of a strip's sides a wall runs from end to end.
+pub fn sides(view: &Turned, strip: &Strip) -> [bool; 2] {
+    let columns = view.columns(strip.along);
+    [0, 1].map(|n| {
+        let side = strip.across[n];
+        let ends = sorted([side, side + [-BEYOND, BEYOND][n]]);
+        let taken = view.some_blocked(columns.clone(), ends[0], ends[1]);
+        taken.iter().filter(|share| **share >= TAKEN).count() as f64 >= WALL * taken.len() as f64
+    })
+}
+
+/// Along which one, if along one alone.
+pub fn side(view: &Turned, strip: &Strip) -> Option<usize> {
+    match sides(view, strip) {
+        [true, false] => Some(0),
+        [false, true] => Some(1),
+        _ => None,
+    }
+}
 
 /// In which of a range of columns, the first of which is the first bit, a wall ends a row and both ways beside it; or one
 /// of them, where the other leads on through a gate in that wall for longer than it is wide.
