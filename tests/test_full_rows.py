@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from test_bays_are_no_ways import HEADS, hall, ways_across
-from zoo import UNKNOWN, Picture, walled
+from zoo import UNKNOWN, Picture
 
 
 def full_rows(gates: tuple[int, ...], wide: int, seed: int) -> tuple[Picture, int]:
@@ -38,34 +38,3 @@ def test_gates_that_lie_in_full_rows_more_evenly_than_chance_deals_them_are_ways
 def test_bays_that_are_empty_in_full_rows_as_chance_deals_them_are_no_ways(empty: tuple[int, ...], seed: int) -> None:
     picture, _ = full_rows(empty, 1, seed)
     assert ways_across(picture) == pytest.approx(HEADS, abs=0.15)
-
-
-def two_racks_of_pallets(seed: int) -> Picture:
-    """Seven rows of two racks back to back between aisles of 6 m; through each leads a gate of 2.2 m.
-
-    Three pallets stand in a bay of 3.6 m, one of eight is missing.
-    """
-    draws = np.random.default_rng(seed)
-    rows, gate, bay, bays, aisle, depth, end = 7, 44, 72, 10, 120, 22, 84
-    picture = walled(2 * end + bays * bay + gate, (rows + 1) * aisle + 2 * rows * depth)
-    for n in range(rows):
-        first = 20 + aisle + n * (aisle + 2 * depth)
-        before = int(draws.integers(2, bays - 1))
-        for number in range(bays):
-            x = 20 + end + number * bay + (gate if number >= before else 0)
-            for low in (first, first + depth):
-                rack = picture[low : low + depth]
-                for pallet in (x + 2 + place * 23 for place in range(3)):
-                    if draws.random() >= 0.12:
-                        rack[1:-1, pallet : pallet + 22] = 0
-                        rack[3:-3, pallet + 1 : pallet + 21] = UNKNOWN
-                for post in (x, x + bay - 2):
-                    rack[:2, post : post + 2] = rack[-2:, post : post + 2] = 0
-    return picture
-
-
-@pytest.mark.parametrize("seed", [0, 3, 5, 7])
-def test_a_gate_between_two_racks_is_a_way_though_it_is_much_narrower_than_the_aisles(seed: int) -> None:
-    widths = ways_across(two_racks_of_pallets(seed))
-    assert widths == pytest.approx([2.2] * (len(widths) - 2) + HEADS, abs=0.35)
-    assert len(widths) >= 6

@@ -199,8 +199,8 @@ impl<'a> Bars<'a> {
             let sides = self.sides(n, row);
             let inner = self.place.rows[row].0.inner(sides);
             let inwards = if inner > f64::midpoint(sides[0], sides[1]) { STEP } else { -STEP };
-            let places = (0..=(off / STEP) as usize).map(|step| inner + step as f64 * inwards);
-            places.into_iter().any(|place| self.row(row).columns.is_closed_at(place))
+            let mut steps = 0..=(off / STEP) as usize;
+            steps.any(|step| self.row(row).columns.is_closed_at(inner + step as f64 * inwards))
         };
         self.place.passing[n].rows.iter().all(is_barred)
     }

@@ -15,7 +15,7 @@ use crate::labels::rows::sections::{Columns, Free, WIDTH};
 use crate::labels::rows::{self, Row};
 use crate::labels::view::look::Look;
 use crate::labels::view::turned::Turned;
-use crate::labels::ways::{walled, widths::are_alike};
+use crate::labels::ways::{walled, widths::Widths};
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 
@@ -73,22 +73,19 @@ pub fn without_bays(evidence: &Evidence, look: &Look, views: &[Turned], mut stri
     };
     let left: Vec<Vec<Strip>> = strips.iter().zip(crossed).map(left).collect();
     // What leads past rows' ends along a wall, as wide as what is told to lead past those of others, does so too.
-    let mut told: Vec<Vec<f64>> = vec![Vec::new(); views.len()];
-    for n in (0..strips.len()).filter(|&n| past_ends[n] && !left[n].is_empty()) {
-        told[strips[n].direction].push(strips[n].width());
-    }
-    for widths in &mut told {
-        widths.sort_by(f64::total_cmp);
-    }
+    let told = (0..strips.len()).filter(|&n| past_ends[n] && !left[n].is_empty()).map(|n| &strips[n]);
+    let told = Widths::of(views, told);
     let is_told = |n: usize| {
-        let (own, widths) = (strips[n].width(), &told[strips[n].direction]);
-        let first = widths.partition_point(|width| *width < own && !are_alike(*width, own));
+        let strip = &strips[n];
+        let pitch = crossing(views, strip.direction).and_then(|view| view.pitch);
         past_ends[n]
-            && widths.get(first).is_some_and(|width| are_alike(*width, own))
-            && walled::side(&views[strips[n].direction], &strips[n]).is_some()
+            && walled::side(&views[strip.direction], strip).is_some()
+            && told[strip.direction].have(strip.width(), pitch)
     };
-    let again = |n: usize| if left[n].is_empty() && is_told(n) { vec![strips[n].clone()] } else { left[n].clone() };
-    (0..strips.len()).flat_map(again).collect()
+    let or_told = |(n, left): (usize, Vec<Strip>)| {
+        if left.is_empty() && is_told(n) { vec![strips[n].clone()] } else { left }
+    };
+    left.into_iter().enumerate().flat_map(or_told).collect()
 }
 
 /// True when a strip leads past the ends of all rows that it crosses, and may be a way there.

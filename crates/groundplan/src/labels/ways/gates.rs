@@ -34,7 +34,7 @@ const OPEN: f64 = 0.5;
 
 /// Ways through rows, as strips of the direction that crosses them.
 pub struct Gates<'a> {
-    /// Those that were known: where bays recur, each as wide as the uprights of the rows that it leads through leave.
+    /// Those that were known, each as wide as the uprights of the rows that it leads through leave.
     pub known: Cow<'a, [Strip]>,
     pub ways: Vec<Strip>,
     /// Others that are told from bays, as wide as they may be.

@@ -57,7 +57,7 @@ const ANYWHERE: f64 = 0.4;
 const OF_ONE_ROW: f64 = 3.0;
 /// Posts leave so much of a bay, in pitches, or more; and of several bays in line no goods all leave a part as small.
 const ONE_BAY: f64 = 0.92;
-const PART: f64 = 0.8;
+const PART_OF_BAY: f64 = 0.8;
 /// Drift that turns a wall moves the ends of the rows before it against each other by so much, metres.
 const TURNED: f64 = 1.0;
 
@@ -329,14 +329,15 @@ impl<'a> Asked<'a> {
             && (is_at_wall() || place.goes_past(next, self.strip, FARTHER) && !is_of_bays())
     }
 
-    /// True when it leads past the ends of several rows, and nothing of those beside reaches into it, or no farther than a wall that
-    /// drift has turned comes nearer to their ends, or those before it end at bars: of a row that goes on past it the bays are empty
-    /// where they end, and it goes on no farther than the way.
+    /// True when it leads past the ends of several rows, and nothing of those beside reaches into it, or those before it end at
+    /// bars: of a row that goes on past it the bays are empty where they end, and it goes on no farther than the way. Along a wall
+    /// that drift has turned the ends of rows beside reach into it, but not to its middle.
     fn is_past_ends(&self) -> bool {
         let bars = &self.context.bars;
         let goes_past = |&row: &usize| self.context.place.goes_past(row, self.strip, FARTHER);
         let is_barred = || bars.end_rows_before(self.n) && self.own.next.iter().all(goes_past);
-        let is_narrower_than_bays = || self.pitch().is_some_and(|pitch| self.width <= PART * pitch);
+        let is_narrower_than_bays =
+            || self.width >= WIDTH.0 && self.pitch().is_some_and(|pitch| self.width <= PART_OF_BAY * pitch);
         let is_along_turned_wall = || {
             self.own.rows.len() >= IN_LINE
                 && is_narrower_than_bays()

@@ -1,5 +1,6 @@
 //! Ways through rows of racks, and past their ends: one that what stands in rows reaches into from its sides is as wide as
-//! that leaves it, and one whose sides are no lines ends with the racks beside it, unless it leads on to something.
+//! that leaves it, one that is part of what a row leaves is all of that, and one whose sides are no lines ends with the racks
+//! beside it, unless it leads on to something.
 
 use super::across::leading_across;
 use super::lead::Lead;

@@ -72,7 +72,8 @@ impl Place<'_> {
         };
         own.is_within && is_full()
             || self.are_double(own)
-                && seldom::are_open(self.views[0], rows(), width, self.is_as_aisles(strips, own, width), is_as_bays)
+                && self.is_as_aisles(strips, own, width)
+                && seldom::are_open(self.views[0], rows(), width, is_as_bays)
     }
 
     /// True when all rows that something passes through may be of two racks.

@@ -19,10 +19,8 @@ const ROWS: usize = 2;
 const UNLIKELY: f64 = 0.01;
 /// The same where each of the rows is open at as many, which chance seldom makes.
 const UNLIKELY_IN_FULL: f64 = 0.1;
-/// What is narrower than the aisles beside it is a way where as many places are as unlikely as this.
-const NARROWER: f64 = 1e-6;
-/// Where not each of the rows is open, they are so at so many times as many places as chance makes.
-const TIMES: f64 = 30.0;
+/// Where not each of the rows is open, chance makes fewer such places than this in all of them.
+const EXPECTED: f64 = 0.1;
 /// Ways as wide as bays are no more than so many of a row's places, or so many where more than so many lead through each row: where
 /// both of two racks are empty at more, they are as one. Where both are at more than so many nothing but legs was seen, and these tell.
 const BAYS: [f64; 2] = [0.2, 0.8];
@@ -46,7 +44,6 @@ pub fn are_open<'a>(
     view: &Turned,
     rows: impl Iterator<Item = &'a Shelves>,
     width: f64,
-    is_as_aisles: bool,
     may_be_bay: impl FnOnce() -> bool,
 ) -> bool {
     let (mut half_open, mut open, mut open_rows, mut places) = (0, 0, 0, 0.0);
@@ -70,13 +67,11 @@ pub fn are_open<'a>(
     }
     let expected = by_chance(open, half_open as f64, places);
     let may_be_bay = may_be_bay();
-    let least = if open > MANY.1 * count { MANY.0 } else { BAYS[0] };
-    let unlikely = if is_as_aisles { UNLIKELY } else { NARROWER };
+    let share = if open > MANY.1 * count { MANY.0 } else { BAYS[0] };
     open_rows >= ROWS
-        && !(may_be_bay && half_open > 0 && holds([least, BAYS[1]], open as f64 / places))
-        && likely(open, expected) < unlikely
-        && (is_as_aisles && open_rows == count
-            || open >= SEVERAL && TIMES * expected < open as f64 && (half_open > 0 || !may_be_bay))
+        && !(may_be_bay && half_open > 0 && holds([share, BAYS[1]], open as f64 / places))
+        && likely(open, expected) < UNLIKELY
+        && (open_rows == count || open >= SEVERAL && expected < EXPECTED && (half_open > 0 || !may_be_bay))
 }
 
 /// Rows side by side but for some places at which they are open.
@@ -144,10 +139,10 @@ impl<'a> Rest<'a> {
 /// How likely it is that of places dealt to rows by chance, each row as likely as another, none has two more than another.
 fn dealt_so_evenly(places: usize, rows: usize) -> f64 {
     let (least, more) = (places / rows, places % rows);
-    let factorial = |n: usize| (1..=n).map(|n| n as f64).product::<f64>();
-    let which = factorial(rows) / factorial(more) / factorial(rows - more);
-    let each = libm::pow(factorial(least), rows as f64) * libm::pow((least + 1) as f64, more as f64);
-    which * factorial(places) / each / libm::pow(rows as f64, places as f64)
+    let factorial = |n: usize| (1..=n).map(|n| libm::log(n as f64)).sum::<f64>();
+    let which = factorial(rows) - factorial(more) - factorial(rows - more);
+    let each = rows as f64 * factorial(least) + more as f64 * libm::log((least + 1) as f64);
+    libm::exp(which + factorial(places) - each - places as f64 * libm::log(rows as f64))
 }
 
 /// At how many of all places both racks are expected to be empty by chance, where both are at so many and one of them is at so
@@ -181,6 +176,15 @@ mod tests {
         {
             assert!((likely(count, expected) - said).abs() < 1e-4, "{count} of {expected}");
         }
+    }
+
+    #[test]
+    fn places_are_dealt_as_evenly_as_counting_says() {
+        // Of 27 deals of three places to three rows six have one in each, of 81 of four 36 two in one and one in the others.
+        for (places, rows, said) in [(3, 3, 6.0 / 27.0), (4, 3, 36.0 / 81.0), (2, 2, 0.5), (400, 1, 1.0)] {
+            assert!((dealt_so_evenly(places, rows) - said).abs() < 1e-9, "{places} to {rows}");
+        }
+        assert!(dealt_so_evenly(1000, 500) < 1e-9);
     }
 
     #[test]
