@@ -25,6 +25,8 @@ SCORES = {
     "pitch_error_m": ("error of a rack's pitch, median", " m", 3),
     "rack_recall": ("racks found", "", 3),
     "rack_precision": ("racks that are ones", "", 3),
+    "hall_recall": ("halls found", "", 3),
+    "hall_precision": ("regions in halls that are halls", "", 3),
     "iou_1to1": ("rooms found, one to one, of their union", "", 3),
     "mcc": ("agreement on rooms, Matthews", "", 3),
     "rooms": ("rooms", "", 0),
@@ -52,6 +54,8 @@ LABELS = {
     "corridor_precision": "prec",
     "rack_recall": "racks",
     "rack_precision": "prec",
+    "hall_recall": "halls",
+    "hall_precision": "prec",
 }
 #: Of the suite of names, in place of those: kept, and found again by whatever name.
 NAMES = {

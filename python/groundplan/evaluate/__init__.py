@@ -89,6 +89,10 @@ def score(survey: Document, truth: Document) -> dict[str, Any]:
         rack_recall, rack_precision
             One-to-one matching of racks whose outlines have an intersection over union of 0.5 at least with the
             truth's ``racks`` {a, b, width, observed}; None without any. Racks that were not observed do not count.
+        hall_recall, hall_precision (where the truth speaks of ``halls``)
+            One-to-one matching of regions whose outlines, holes left out, have an intersection over union of 0.7 at
+            least with the truth's ``halls`` {polygon, observed}. Of the regions those count that lie in halls with half
+            of their ground; what was not observed does not count. None without any.
 
     Raises
     ------
@@ -103,6 +107,8 @@ def score(survey: Document, truth: Document) -> dict[str, Any]:
     parts = [_scores.direction_scores, _scores.line_scores, _scores.junction_scores, _scores.corridor_scores]
     if "pillars" in true or "racks" in true:
         parts += [_patterns.pattern_scores, _patterns.rack_scores]
+    if "halls" in true:
+        parts.append(_regions.hall_scores)
     result: dict[str, Any] = {}
     for part in parts:
         try:

@@ -1,4 +1,4 @@
-"""How well the regions of a survey agree with a ground truth of rooms: two label images, pixel by pixel."""
+"""How well the regions of a survey agree with a truth: rooms pixel by pixel, halls by their outlines."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ import numpy.typing as npt
 
 from groundplan._errors import MapError
 from groundplan._polygons import fill
-from groundplan.evaluate._scores import optional
+from groundplan.evaluate._scores import matches, optional
 
 Labels = npt.NDArray[np.int64]
 
+_HALL = 0.7  # least intersection over union of a region and the hall that it is
 _LEAST = 100  # pixels; a region that has no more is left out on both sides (Bormann et al. 2016)
 _FREE = 250  # grey from which a map of theirs is free, and above which a ground truth is a room
 
@@ -126,3 +127,31 @@ def _matthews(shared: float, row: float, column: float, whole: float) -> float:
     spread = row * column * (whole - column) * (whole - row)
     apart = shared * (whole - row - column + shared) - (row - shared) * (column - shared)
     return float(apart / math.sqrt(spread)) if spread > 0 else 0.0
+
+
+def hall_scores(survey: dict[str, Any], truth: dict[str, Any]) -> dict[str, Any]:
+    """Recall and precision of regions as halls, matched one to one where their outlines have an IoU of 0.7 at least.
+
+    Of the regions those count that lie in halls with half of their ground, holes left out, as racks stand in these.
+    Halls that were not observed count neither way, nor what lies in them. None where there is nothing to ask.
+    """
+    if "halls" not in truth:
+        return {"hall_recall": None, "hall_precision": None}
+    geometry = optional("shapely.geometry")
+    asked, unseen = (
+        [geometry.Polygon(hall["polygon"]).buffer(0) for hall in truth["halls"] if hall["observed"] is seen]
+        for seen in (True, False)
+    )
+    given = [geometry.Polygon(label["polygon"]).buffer(0) for label in survey["labels"] if label["kind"] == "region"]
+
+    def within(region: Any, halls: list[Any]) -> bool:
+        return bool(sum(region.intersection(hall).area for hall in halls) > region.area / 2)
+
+    mine = [region for region in given if within(region, asked) and not within(region, unseen)]
+    shares = [[hall.intersection(region).area / hall.union(region).area for region in mine] for hall in asked]
+    overlap = np.array(shares, dtype=float).reshape(len(asked), len(mine))
+    right = matches(1.0 - overlap, overlap >= _HALL) if overlap.size else 0
+    return {
+        "hall_recall": round(right / len(asked), 4) if asked else None,
+        "hall_precision": round(right / len(mine), 4) if mine else None,
+    }

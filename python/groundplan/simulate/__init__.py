@@ -36,7 +36,7 @@ from groundplan.simulate._patterns import patterns
 from groundplan.simulate._plan import GroundPlan, Point, network
 from groundplan.simulate._raster import rasterise
 from groundplan.simulate._remake import rearrange
-from groundplan.simulate._rooms import rooms
+from groundplan.simulate._rooms import halls, rooms
 from groundplan.simulate._truth import Picture, truth
 from groundplan.simulate._warehouse import warehouse_plan
 
@@ -201,6 +201,8 @@ def _simulated(
     picture = Picture(pixels[::-1], corner, options.resolution)
     facts = truth(plan, network(plan.corridors), picture, lambda p: turned(drift.bend(p)), yaw)
     facts |= patterns(plan, picture, lambda p: turned(drift.bend(p)))
+    if plan.halls:
+        facts |= halls(plan, picture, lambda p: turned(drift.bend(p)))
     facts["frame"] = [*(round(value, 6) for value in turned((0.0, 0.0))), round(yaw, 9)]
     shown = None
     if plan.rooms:

@@ -140,6 +140,8 @@ class GroundPlan:
         What a survey of a perfect map would find.
     rooms, doors
         The same of an office: a warehouse has none.
+    halls : list of list of (float, float)
+        Of a warehouse the corners of each hall.
     ways : list of Corridor
         What is driven besides the corridors.
     racks, pillars
@@ -157,6 +159,7 @@ class GroundPlan:
     corridors: list[Corridor] = field(default_factory=list)
     rooms: list[Room] = field(default_factory=list)
     doors: list[Door] = field(default_factory=list)
+    halls: list[list[Point]] = field(default_factory=list)
     ways: list[Corridor] = field(default_factory=list)
     racks: list[Rack] = field(default_factory=list)
     pillars: list[tuple[Point, float]] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""Rooms and doors as the map shows them, and the ground truth picture of the rooms."""
+"""Rooms, doors and halls as the map shows them, and the ground truth picture of the rooms."""
 
 from __future__ import annotations
 
@@ -57,6 +57,18 @@ def rooms(plan: GroundPlan, picture: Picture, frame: Frame) -> tuple[dict[str, A
         for door in plan.doors
     ]
     return {"rooms": entries, "doors": doors}, np.ascontiguousarray(image[::-1])
+
+
+def halls(plan: GroundPlan, picture: Picture, frame: Frame) -> dict[str, Any]:
+    """``halls`` of the truth, wall to wall; one counts as observed as a room does."""
+    entries = []
+    for hall in plan.halls:
+        ring = _outline(hall, frame)
+        corners: npt.NDArray[np.float64] = (np.array(ring) - picture.origin) / picture.resolution
+        seen = picture.pixels[fill([corners], picture.pixels.shape)]
+        observed = bool(seen.size and np.mean(seen != UNKNOWN) >= _SEEN)
+        entries.append({"polygon": [_point(p) for p in ring], "observed": observed})
+    return {"halls": entries}
 
 
 def _point(p: Point) -> list[float]:

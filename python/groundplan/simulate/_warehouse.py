@@ -23,6 +23,7 @@ def warehouse_plan(options: WarehouseOptions, random: np.random.Generator) -> Gr
     """Lay the warehouse out: every hall, the passages between them, and then the things on the floor."""
     halls, passages = site(options, random)
     plan = GroundPlan(_directions(halls), [corner for hall in halls for corner in hall.corners()])
+    plan.halls.extend(hall.corners() for hall in halls)
     for hall in halls:
         _build(plan, hall, options, random)
     for passage in passages:

@@ -267,9 +267,9 @@ mod tests {
             let key = |n: usize| Key::default().with(keys[n]);
             let found = recall.gaps.or_find_some(keys.len(), key, |some| {
                 sought = some.to_vec();
-                some.iter().map(|&n| vec![Bar { ends: [[keys[n] as f64; 2]; 2] }]).collect()
+                some.iter().map(|&n| vec![Bar::new([[keys[n] as f64; 2]; 2])]).collect()
             });
-            let of = |key: &u64| vec![Bar { ends: [[*key as f64; 2]; 2] }];
+            let of = |key: &u64| vec![Bar::new([[*key as f64; 2]; 2])];
             assert_eq!(found, keys.iter().map(of).collect::<Vec<_>>());
             memory = recall.memory();
             sought

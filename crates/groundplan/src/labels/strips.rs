@@ -10,7 +10,7 @@ use super::posts::bays;
 use super::posts::period::Period;
 use super::posts::pillars;
 use super::rooms::{self, Racked, Raster};
-use super::rows::Row;
+use super::rows::{Row, whole};
 use super::sketch::{Plan, Sketch};
 use super::view::turned::Turned;
 use super::{Division, Evidence, JunctionKind, Label};
@@ -152,14 +152,23 @@ fn racked(
         // A wall that is thin has its line, and doors have theirs, where the corridor ends.
         rectangle(&views[strip.direction], extents[n], wider(strip.across, -SIDE.min(strip.width() / 4.0)))
     });
-    // What a rack leaves of the row between two corridors leads from one to the other, and is a way too.
-    let racks: BTreeSet<_> = rows.iter().filter_map(|rack| rack.between).collect();
-    let left = between.iter().filter(|row| row.between.is_some_and(|pair| racks.contains(&pair)));
-    // At its ends it may lead to a wall with a door.
-    let left = left.map(|row| rectangle(&views[row.direction], row.along, wider(row.across, RIM)));
     let around = |row: &Row| rectangle(&views[row.direction], wider(row.along, RIM), wider(row.across, RIM));
+    // What a rack leaves of the row between two corridors leads from one to the other, and is a way too.
+    let left = |racks: &[&Row]| {
+        let racks: BTreeSet<_> = racks.iter().filter_map(|rack| rack.between).collect();
+        let left = between.iter().filter(move |row| row.between.is_some_and(|pair| racks.contains(&pair)));
+        // At its ends it may lead to a wall with a door.
+        left.map(|row| rectangle(&views[row.direction], row.along, wider(row.across, RIM))).collect::<Vec<_>>()
+    };
+    let all: Vec<&Row> = rows.iter().collect();
+    let kin = whole::have_kin(views, &all, &all);
+    let with_kin: Vec<&Row> = all.iter().zip(kin).filter(|(_, has_kin)| *has_kin).map(|(row, _)| *row).collect();
+    let ways: Vec<_> = corridors.collect();
     Racked {
-        ways: corridors.chain(rows.iter().map(around)).chain(left).collect(),
+        doorless: [ways.clone(), all.iter().map(|row| around(row)).collect(), left(&all)].concat(),
+        ways,
+        left: left(&with_kin),
+        racks: with_kin.into_iter().map(around).collect(),
         grounds: rows.iter().map(|row| rectangle(&views[row.direction], row.along, row.across)).collect(),
     }
 }

@@ -55,7 +55,7 @@ impl Corridor {
     pub fn around(&self, longest: f64) -> Vec<[f64; 2]> {
         let [from, to] = self.axis;
         let length = distance(from, to).max(1e-9);
-        let [tx, ty] = Bar { ends: self.axis }.heading();
+        let [tx, ty] = Bar::new(self.axis).heading();
         let corner = |s: f64, t: f64| [from[0] + s * tx - t * ty, from[1] + s * ty + t * tx];
         let half = longest / 2.0;
         vec![corner(0.0, -half), corner(length, -half), corner(length, half), corner(0.0, half)]
@@ -63,7 +63,7 @@ impl Corridor {
 
     /// A point's place along the centre line, from its first end, and across it.
     fn place(&self, point: [f64; 2]) -> [f64; 2] {
-        let [tx, ty] = Bar { ends: self.axis }.heading();
+        let [tx, ty] = Bar::new(self.axis).heading();
         let [x, y] = [0, 1].map(|n| point[n] - self.axis[0][n]);
         [x * tx + y * ty, y * tx - x * ty]
     }

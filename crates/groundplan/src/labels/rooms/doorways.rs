@@ -52,7 +52,7 @@ pub fn find(raster: &Raster, numbers: &Runs, openings: Vec<[[f64; 2]; 2]>) -> Ve
     // Between each pair of regions.
     let mut known: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
     for ends in openings {
-        let [ux, uy] = Bar { ends }.heading();
+        let [ux, uy] = Bar::new(ends).heading();
         let door = Doorway { between: [0; 2], ends };
         let [x, y] = door.middle();
         let beside = |side: f64| {

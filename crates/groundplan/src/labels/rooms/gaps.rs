@@ -3,6 +3,7 @@
 use super::super::Evidence;
 use super::super::recall::Key;
 use super::super::view::patches::Patches;
+use super::islands::Spans;
 use super::raster::Raster;
 use crate::bands::map_each;
 use crate::ends::around;
@@ -10,14 +11,21 @@ use crate::gradients;
 use crate::grid::{Frame, angle_between};
 use crate::on_line::{self, OnLine};
 use crate::subdivision::distance;
+use std::ops::Range;
 
 /// A straight closure of a gap, jamb to jamb, in the raster's places; both ends lie in free space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bar {
     pub ends: [[f64; 2]; 2],
+    /// True when it closes a gap in a wall that goes on along its line on both sides.
+    pub is_gate: bool,
 }
 
 impl Bar {
+    pub fn new(ends: [[f64; 2]; 2]) -> Self {
+        Self { ends, is_gate: false }
+    }
+
     /// Pixels.
     pub fn length(&self) -> f64 {
         distance(self.ends[0], self.ends[1])
@@ -25,11 +33,20 @@ impl Bar {
 
     /// True when one of its jambs belongs to something solid that stands by itself.
     pub fn is_at_solid(&self, raster: &Raster) -> bool {
+        self.has_jamb_in(raster, &raster.islands.solid)
+    }
+
+    /// True when one of its jambs hangs together with what lies around the map.
+    pub fn is_at_border(&self, raster: &Raster) -> bool {
+        self.has_jamb_in(raster, &raster.islands.border)
+    }
+
+    fn has_jamb_in(&self, raster: &Raster, spans: &Spans) -> bool {
         let [ux, uy] = self.heading();
         let jamb = |[x, y]: [f64; 2], way: f64| {
             (1..=JAMB_PIXELS)
                 .filter_map(|n| raster.at([x + way * ux * f64::from(n), y + way * uy * f64::from(n)]))
-                .any(|pixel| raster.islands.solid.contains(pixel))
+                .any(|pixel| spans.contains(pixel))
         };
         jamb(self.ends[0], -1.0) || jamb(self.ends[1], 1.0)
     }
@@ -58,6 +75,16 @@ const WALL: f64 = 0.5;
 /// and over so much of it, metres, from the gap on, edge pixels lie along the line for at least this share.
 const JAMB: f64 = 0.6;
 const LINED: f64 = 0.6;
+/// A wall that goes on for so long, metres, on both sides of a gap, edge pixels along it for that share, parts what lies before
+/// it from what lies behind, and its gap may be so many times as wide as others.
+const GATE: f64 = 1.0;
+const WIDER: f64 = 2.0;
+/// On one side at least it goes on for so many times the gap's width, edge pixels along it for this share of that: rows' ends
+/// are as wide as the aisles between.
+const LONG: f64 = 2.0;
+const LINED_LONG: f64 = 0.5;
+/// What is open over this share is a gap, be something small there.
+const OPEN: f64 = 0.9;
 
 /// A jamb lies within so many pixels of a bar's end.
 const JAMB_PIXELS: i32 = 4;
@@ -86,8 +113,13 @@ pub fn along_lines(evidence: &Evidence, raster: &Raster) -> Vec<Bar> {
         let gaps = evidence.recall.gaps.or_find_some(offsets.len(), key, |some| {
             let offsets: Vec<f64> = some.iter().map(|&n| offsets[n]).collect();
             let lined = lined(evidence, raster, angle_on_grid, &offsets);
-            let gaps =
-                |(&offset, lined): (&f64, &Vec<i64>)| line(offset).gaps(lined, evidence.parameters.rooms_max_opening);
+            let widest = evidence.parameters.rooms_max_opening;
+            let gaps = |(&offset, lined): (&f64, &Vec<i64>)| {
+                let line = line(offset);
+                let mut gaps = line.gaps(lined, widest);
+                gaps.extend(line.gates(lined, WIDER * widest));
+                gaps
+            };
             offsets.iter().zip(&lined).map(gaps).collect()
         });
         gaps.concat()
@@ -243,8 +275,43 @@ impl<'a> Line<'a> {
                 let mut after = || (end..to).take(most).take_while(|&step| !is_free(step)).count();
                 (end - start) as f64 >= crack && (before == most || after() == most)
             });
-            bars.extend(gaps.into_iter().map(|[start, end]| Bar { ends: [self.place(start), self.place(end - 1)] }));
+            bars.extend(gaps.into_iter().map(|gap| self.bar(gap, false)));
         }
         bars
+    }
+
+    /// The gaps in a wall that goes on along the line on both sides, edge pixels along it at some steps in ascending order.
+    fn gates(&self, lined: &[i64], widest: f64) -> Vec<Bar> {
+        let [crack, widest, wall] = [CRACK, widest, GATE].map(|metres| self.raster.pixels(metres));
+        let (near, wall) = (self.near(), wall.max(1.0) as i64);
+        let least = (LINED * wall as f64).ceil() as usize;
+        // The last of so many steps at which a wall may end, and the first at which one may begin.
+        let ends = lined.windows(least).filter(|some| some[least - 1] - some[0] < wall);
+        let (mut gates, mut last) = (Vec::new(), None);
+        for [first, end] in ends.map(|some| [some[0], some[least - 1]]) {
+            if let Some(before) = last.filter(|before| (first - before) as f64 > crack) {
+                let is_free = |step: &i64| self.is_free(*step, near);
+                let start = (before + 1..first).find(is_free);
+                let gap = start.zip((before + 1..first).rfind(is_free)).map(|(start, end)| [start, end + 1]);
+                let count = |steps: Range<i64>| {
+                    let [from, to] = [steps.start, steps.end].map(|end| lined.partition_point(|step| *step < end));
+                    (to - from) as f64
+                };
+                let is_gate = |&[start, end]: &[i64; 2]| {
+                    let width = (end - start) as f64;
+                    let long = (LONG * width) as i64;
+                    (crack..=widest).contains(&width)
+                        && count(start - long..start).max(count(end..end + long)) >= LINED_LONG * long as f64
+                        && (start..end).filter(is_free).count() as f64 >= OPEN * width
+                };
+                gates.extend(gap.filter(is_gate).map(|gap| self.bar(gap, true)));
+            }
+            last = Some(end);
+        }
+        gates
+    }
+
+    fn bar(&self, [start, end]: [i64; 2], is_gate: bool) -> Bar {
+        Bar { ends: [self.place(start), self.place(end - 1)], is_gate }
     }
 }

@@ -54,6 +54,8 @@ pub struct Islands {
     pub filled: Spans,
     /// Pixels of those that are too thick for one.
     pub solid: Spans,
+    /// Pixels that are no island's: all that hangs together with the raster's border.
+    pub border: Spans,
 }
 
 /// Sums over the pixels of an island, from its first one.
@@ -105,6 +107,7 @@ pub fn find(raster: &Raster) -> Islands {
     #[derive(Clone, Copy, PartialEq)]
     enum Mark {
         None,
+        Border,
         Filled,
         Solid,
     }
@@ -123,6 +126,7 @@ pub fn find(raster: &Raster) -> Islands {
     let mut found = Islands::default();
     let mut marks = vec![Mark::None; count + 1];
     // The first hangs together with the border, from which the first run is.
+    marks[1.min(count)] = Mark::Border;
     for (mark, sums) in marks.iter_mut().zip(&sums).skip(2) {
         let (middle, [length, thickness]) = sums.extent();
         if length <= raster.pixels(BLOB) {
@@ -143,5 +147,6 @@ pub fn find(raster: &Raster) -> Islands {
     };
     found.filled = marked(Mark::Filled);
     found.solid = marked(Mark::Solid);
+    found.border = marked(Mark::Border);
     found
 }

@@ -22,6 +22,8 @@ const DOORWAY: f64 = 1.0;
 const OPEN: f64 = 0.6;
 /// What the leaf of a door leaves open is a way of its own when it is narrower than this share of the space.
 const BESIDE_LEAF: f64 = 0.5;
+/// What a gate alone leads into is an aisle that ends there when it is as wide and up to so many times as long.
+const LONGEST: f64 = 20.0;
 
 /// Pieces while they are joined.
 pub struct Joining<'a> {
@@ -94,6 +96,7 @@ impl<'a> Joining<'a> {
     /// Joins all that belong together: the pieces, and for each number the name of what it is part of.
     pub fn join_all(mut self, threads: usize) -> (Runs, Vec<u32>) {
         self.join_open(threads);
+        self.join_dead_ends();
         self.join_unwalled();
         self.join_beyond_leaves();
         (self.pieces, (0..self.wall.len() as u32).map(|n| self.sets.of(n)).collect())
@@ -142,7 +145,7 @@ impl<'a> Joining<'a> {
             .collect();
         let opening = |n: &usize| {
             let Stretch { bar, pixels, .. } = &self.stretches[*n];
-            Bar { ends: ends(self.raster, &self.bars[*bar], pixels) }
+            Bar::new(ends(self.raster, &self.bars[*bar], pixels))
         };
         let openings: Vec<Bar> = parting.iter().map(opening).collect();
         for (n, is_beyond) in parting.into_iter().zip(leaves::beyond(&openings, self.raster)) {
@@ -216,27 +219,85 @@ impl<'a> Joining<'a> {
         }
     }
 
+    /// Joins what a gate alone leads into and is no wider than it: no passage, which leads on.
+    fn join_dead_ends(&mut self) {
+        // What each set opens into; itself where that is several.
+        let mut into: Vec<Option<u32>> = vec![None; self.wall.len()];
+        for n in 0..self.stretches.len() {
+            let [one, other] = self.sides(n);
+            for [own, other] in [[one, other], [other, one]] {
+                let known = &mut into[own as usize];
+                *known = if known.is_none_or(|known| known == other) { Some(other) } else { Some(own) };
+            }
+        }
+        for n in 0..self.stretches.len() {
+            let sides = self.sides(n);
+            if self.bars[self.stretches[n].bar].is_gate && sides[0] != sides[1] {
+                let [one, other] = self.beyond_both(n, sides, f64::INFINITY);
+                let tighter = usize::from(other < one);
+                let width = self.width(n);
+                let is_dead_end = into[sides[tighter] as usize] == Some(sides[1 - tighter])
+                    && self.area[sides[tighter] as usize] as f64 <= LONGEST * width * width;
+                if is_dead_end && width >= self.rules.openness * one.min(other) {
+                    self.join(sides);
+                }
+            }
+        }
+    }
+
+    /// How wide a stretch is, pixels: of a slanted bar it has fewer than it is long.
+    fn width(&self, stretch: usize) -> f64 {
+        let Stretch { bar, pixels, .. } = &self.stretches[stretch];
+        self.bars[*bar].length().min(std::f64::consts::SQRT_2 * pixels.len() as f64)
+    }
+
     /// The width of a stretch over the width of the space on its tighter side; what is less than `least` only so far that
     /// this is known.
     fn measure(&self, stretch: usize, least: f64) -> Openness {
         let sides = self.stretches[stretch].pieces.map(|piece| self.sets.name(piece));
         let ages = sides.map(|side| self.age[side as usize]);
-        let Stretch { bar, pixels, .. } = &self.stretches[stretch];
-        // A stretch of a slanted bar has fewer pixels than it is long.
-        let width = self.bars[*bar].length().min(std::f64::consts::SQRT_2 * pixels.len() as f64);
+        let width = self.width(stretch);
         let tie = PER_METRE * width * self.raster.resolution;
         let area = sides.map(|side| self.area[side as usize]).into_iter().min().unwrap_or(0) as f64;
         // What is too small for a region goes first of all.
         let small = area * self.raster.resolution.powi(2) <= self.rules.least_area;
         // A pixel more than it takes, for what floats round.
         let enough = if small || least <= tie { f64::INFINITY } else { width / (least - tie) + 1.0 };
-        // The smaller one first: of the other it is enough to know that it is as wide.
-        let both = [(sides[0], 1.0), (sides[1], -1.0)];
-        let first = usize::from(self.area[sides[1] as usize] < self.area[sides[0] as usize]);
-        let one = self.beyond(stretch, both[first], enough);
-        let beyond = one.min(self.beyond(stretch, both[1 - first], one));
+        let beyond = self.beyond_both(stretch, sides, enough);
+        let [one, other] = beyond;
+        // What leads on from a gate as wide as it is a passage, and another region than the hall.
+        let is_passage = self.bars[self.stretches[stretch].bar].is_gate
+            && self.goes_on(stretch, if one <= other { (sides[0], 1.0) } else { (sides[1], -1.0) }, width);
+        let beyond = if is_passage { one.max(other) } else { one.min(other) };
         let share = if beyond > 0.0 { (width / beyond).min(1.0) } else { 1.0 };
         Openness { value: share + tie + if small { 10.0 } else { 0.0 }, stretch, ages }
+    }
+
+    /// How wide the sets on both sides are beyond a stretch, pixels, or as much as is enough; but for a gate's the larger no
+    /// more than the smaller one.
+    fn beyond_both(&self, stretch: usize, sides: [u32; 2], enough: f64) -> [f64; 2] {
+        let both = [(sides[0], 1.0), (sides[1], -1.0)];
+        // The smaller one first: of the other it is enough to know that it is as wide.
+        let first = usize::from(self.area[sides[1] as usize] < self.area[sides[0] as usize]);
+        let one = self.beyond(stretch, both[first], enough);
+        let is_gate = self.bars[self.stretches[stretch].bar].is_gate;
+        let other = self.beyond(stretch, both[1 - first], if is_gate { enough } else { one });
+        if first == 0 { [one, other] } else { [other, one] }
+    }
+
+    /// True when a set goes on so far straight beyond a stretch, pixels.
+    fn goes_on(&self, stretch: usize, (set, side): (u32, f64), depth: f64) -> bool {
+        let Stretch { bar, pixels, .. } = &self.stretches[stretch];
+        let [ux, uy] = self.bars[*bar].heading();
+        let [x, y] = self.raster.place(pixels[pixels.len() / 2]);
+        let is_in = |n: usize| {
+            let pixel = self.raster.at([x - uy * side * n as f64, y + ux * side * n as f64]);
+            pixel.is_some_and(|pixel| {
+                let run = self.pieces.run_at(pixel);
+                run.map_or(self.raster.free.get(pixel), |run| self.sets.name(run.number) == set)
+            })
+        };
+        (STEP as usize..=depth as usize).all(is_in)
     }
 
     /// How wide a set is beyond a stretch, at its widest within [`DEPTH`], measured along the bar, pixels; or as much

@@ -38,7 +38,7 @@ pub fn beyond(openings: &[Bar], raster: &Raster) -> Vec<bool> {
 /// True when something as long as a doorway is wide stands from its jamb to a tip, open by the half of a right angle at
 /// least, and points at what lies across.
 fn is_leaf(raster: &Raster, door: &Bar, [hinge, tip]: [[f64; 2]; 2], across: [f64; 2]) -> bool {
-    let leaf = Bar { ends: [hinge, tip] };
+    let leaf = Bar::new([hinge, tip]);
     let (width, length) = (door.length(), leaf.length());
     let cosine = |one: &Bar, other: &Bar| {
         let ([ax, ay], [bx, by]) = (one.heading(), other.heading());
@@ -46,7 +46,7 @@ fn is_leaf(raster: &Raster, door: &Bar, [hinge, tip]: [[f64; 2]; 2], across: [f6
     };
     if !(AS_LONG * width..=width + raster.pixels(WALL)).contains(&length)
         || cosine(&leaf, door).abs() > OPEN
-        || cosine(&leaf, &Bar { ends: [tip, across] }) < ALONG
+        || cosine(&leaf, &Bar::new([tip, across])) < ALONG
     {
         return false;
     }

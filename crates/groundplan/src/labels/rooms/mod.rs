@@ -48,10 +48,28 @@ const TOGETHER: f64 = 0.35;
 /// Where there are racks: convex polygons in the map frame.
 #[derive(Default)]
 pub struct Racked {
-    /// Ways along racks: no doors are within them.
+    /// Ways along racks, racks with a rim round them, and what these leave of their rows: no doors are within them, but gates.
+    pub doorless: Vec<Vec<[f64; 2]>>,
+    /// The ways by themselves: only across these are there gates,
     pub ways: Vec<Vec<[f64; 2]>>,
+    /// and none between racks that have others as deep across an aisle, and what these leave: a wall between two halls may look
+    /// like one that has none.
+    pub racks: Vec<Vec<[f64; 2]>>,
+    pub left: Vec<Vec<[f64; 2]>>,
     /// What the racks stand on: what is free of it is no region.
     pub grounds: Vec<Vec<[f64; 2]>>,
+}
+
+/// Convex polygons of which it is asked whether any holds a point.
+struct Within<'a> {
+    near: Near,
+    all: &'a [Vec<[f64; 2]>],
+}
+
+impl Within<'_> {
+    fn hold(&self, point: [f64; 2]) -> bool {
+        self.near.at(point).iter().any(|&n| outline::holds(&self.all[n as usize], point))
+    }
 }
 
 /// The free space of a map.
@@ -76,7 +94,9 @@ impl Space {
         let mut bars = gaps::along_lines(evidence, &self.raster);
         bars.retain(|bar| !bar.is_at_solid(&self.raster));
         let together = self.raster.pixels(TOGETHER);
-        let near = Near::points((0..).zip(&bars).flat_map(|(n, gap)| gap.ends.map(|end| (n, end))));
+        let near = Near::points(
+            (0..).zip(&bars).filter(|(_, bar)| !bar.is_gate).flat_map(|(n, gap)| gap.ends.map(|end| (n, end))),
+        );
         let fresh = |narrow: &&Bar| {
             let about = near.about(narrow.ends[0], together);
             !about.into_iter().any(|gap| bars[gap as usize].is_near(narrow, together))
@@ -102,12 +122,18 @@ pub fn find<'d>(
 ) -> Vec<Label> {
     let raster = &space.raster;
     let longest = bars.iter().map(Bar::length).fold(0.0, f64::max) * raster.resolution;
-    let ways = Near::polygons(&racked.ways);
     let crossed = Near::polygons(&corridors.iter().map(|corridor| corridor.around(longest)).collect::<Vec<_>>());
+    let [doorless, ways, racks, left] = [&racked.doorless, &racked.ways, &racked.racks, &racked.left]
+        .map(|all| Within { near: Near::polygons(all), all });
     bars.retain(|bar| {
         let ends = bar.ends.map(|end| evidence.grid.frame.to_metres(raster.to_grid(end)));
         let middle = [0, 1].map(|axis| f64::midpoint(ends[0][axis], ends[1][axis]));
-        !ways.at(middle).iter().any(|&way| outline::holds(&racked.ways[way as usize], middle))
+        if bar.is_gate {
+            let is_between_racks =
+                || racks.hold(middle) || left.hold(middle) || ends.iter().all(|end| racks.hold(*end));
+            return ways.hold(middle) && bar.is_at_border(raster) && !is_between_racks();
+        }
+        !doorless.hold(middle)
             && !crossed.at(middle).iter().any(|&corridor| corridors[corridor as usize].is_crossed(ends))
     });
     let parameters = evidence.parameters;

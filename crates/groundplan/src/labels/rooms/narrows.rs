@@ -208,8 +208,8 @@ impl<'a> Part<'a> {
         }
         let (_, (_, x, y)) = best?;
         let (p, q) = ([ax as f64, ay as f64], [x as f64, y as f64]);
-        let [ux, uy] = Bar { ends: [p, q] }.heading();
-        Some(Bar { ends: [[p[0] + ux, p[1] + uy], [q[0] - ux, q[1] - uy]] })
+        let [ux, uy] = Bar::new([p, q]).heading();
+        Some(Bar::new([[p[0] + ux, p[1] + uy], [q[0] - ux, q[1] - uy]]))
     }
 }
 

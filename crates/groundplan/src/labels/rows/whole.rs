@@ -155,7 +155,7 @@ pub fn are_between_halls(views: &[Turned], rows: &[&Row]) -> Vec<bool> {
 }
 
 /// Which rows have one as deep across an aisle, of some.
-fn have_kin(views: &[Turned], rows: &[&Row], others: &[&Row]) -> Vec<bool> {
+pub fn have_kin(views: &[Turned], rows: &[&Row], others: &[&Row]) -> Vec<bool> {
     let placed = placed(views, others.iter().map(|row| row.place()));
     let has_kin = |row: &Row| {
         let mut near = standing_near(&placed, row).into_iter().map(|n| others[n]);
