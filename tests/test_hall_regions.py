@@ -54,11 +54,14 @@ def test_a_passage_shorter_than_wide_parts_two_halls_all_the_same() -> None:
     assert len(areas(surveyed(two_halls((4.6, 7.8), apart=1.6)))) == 2
 
 
-def test_ways_through_rows_are_no_gates_be_the_rows_from_wall_to_wall() -> None:
-    # Rows that end at both walls, and a way through all of them; and rows that stand free.
-    for racks in (rows([3, 8, 13], [(0, 13), (16, 30)], 1.5), rows([3, 8, 13], [(4, 13), (16, 26)], 1.5)):
-        survey = surveyed(site([(0, 0, 30, 17)], racks))
-        assert len(areas(survey)) == 1 and not survey.of_kind("door")
+@pytest.mark.parametrize(
+    "pieces",
+    [[(0, 13), (16, 30)], [(4, 13), (16, 26)], [(0, 1.2), (4.2, 30)], [(0, 2.2), (5, 30)]],
+    ids=["from wall to wall", "free", "a short piece at the wall", "a bay at the wall"],
+)
+def test_ways_through_rows_are_no_gates(pieces: list[tuple[float, float]]) -> None:
+    survey = surveyed(site([(0, 0, 30, 17)], rows([3, 8, 13], pieces, 1.5)))
+    assert len(areas(survey)) == 1 and not survey.of_kind("door")
 
 
 def test_aisles_that_end_at_a_wall_are_of_their_hall() -> None:

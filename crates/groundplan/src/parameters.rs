@@ -215,7 +215,7 @@ parameters! {
     pillars_min_pitch: f64 = 2.5, "pillars.min_pitch", "m", Range::Number(0.5, 100.0), false, "II-E",
         "Pillars that recur do so at least at this pitch.";
     rooms_max_opening: f64 = 3.5, "rooms.max_opening", "m", Range::Number(0.0, 100.0), false, "II-E",
-        "A gap in a wall may be a door when it is at most this wide.";
+        "A gap in a wall may be a door when it is at most this wide, and a gate between halls when it is at most twice as wide.";
     rooms_openness: f64 = 0.8, "rooms.openness", "", Range::Number(0.1, 1.0), false, "II-E",
         "An opening parts two regions when it is narrower than this share of the space on its tighter side.";
     rooms_min_area: f64 = 2.0, "rooms.min_area", "m2", Range::Number(0.0, 1e6), false, "II-E",

@@ -135,8 +135,6 @@ def hall_scores(survey: dict[str, Any], truth: dict[str, Any]) -> dict[str, Any]
     Of the regions those count that lie in halls with half of their ground, holes left out, as racks stand in these.
     Halls that were not observed count neither way, nor what lies in them. None where there is nothing to ask.
     """
-    if "halls" not in truth:
-        return {"hall_recall": None, "hall_precision": None}
     geometry = optional("shapely.geometry")
     asked, unseen = (
         [geometry.Polygon(hall["polygon"]).buffer(0) for hall in truth["halls"] if hall["observed"] is seen]

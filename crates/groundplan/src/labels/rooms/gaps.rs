@@ -17,13 +17,13 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bar {
     pub ends: [[f64; 2]; 2],
-    /// True when it closes a gap in a wall that goes on along its line on both sides.
-    pub is_gate: bool,
+    /// Of one found as a gap in a wall that goes on along its line on both sides, on which of these it is long.
+    pub gate: Option<[bool; 2]>,
 }
 
 impl Bar {
     pub fn new(ends: [[f64; 2]; 2]) -> Self {
-        Self { ends, is_gate: false }
+        Self { ends, gate: None }
     }
 
     /// Pixels.
@@ -36,12 +36,8 @@ impl Bar {
         self.has_jamb_in(raster, &raster.islands.solid)
     }
 
-    /// True when one of its jambs hangs together with what lies around the map.
-    pub fn is_at_border(&self, raster: &Raster) -> bool {
-        self.has_jamb_in(raster, &raster.islands.border)
-    }
-
-    fn has_jamb_in(&self, raster: &Raster, spans: &Spans) -> bool {
+    /// True when one of its jambs is of some pixels.
+    pub fn has_jamb_in(&self, raster: &Raster, spans: &Spans) -> bool {
         let [ux, uy] = self.heading();
         let jamb = |[x, y]: [f64; 2], way: f64| {
             (1..=JAMB_PIXELS)
@@ -51,11 +47,23 @@ impl Bar {
         jamb(self.ends[0], -1.0) || jamb(self.ends[1], 1.0)
     }
 
+    /// True where it was found as a gap in a wall that goes on on both sides.
+    pub fn is_gate(&self) -> bool {
+        self.gate.is_some()
+    }
+
     /// True when both ends are within a distance of the other's.
     pub fn is_near(&self, other: &Self, distance: f64) -> bool {
         let near = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2) <= distance * distance;
         let ([a, b], [c, d]) = (self.ends, other.ends);
         (near(a, c) && near(b, d)) || (near(a, d) && near(b, c))
+    }
+
+    /// Points of the wall beyond its ends, as far from these as half of what must be wall there.
+    pub fn flanks(&self, raster: &Raster) -> [[f64; 2]; 2] {
+        let ([ux, uy], far) = (self.heading(), raster.pixels(FLANK / 2.0));
+        let [p, q] = self.ends;
+        [[p[0] - far * ux, p[1] - far * uy], [q[0] + far * ux, q[1] + far * uy]]
     }
 
     /// Unit vector from the first end to the second.
@@ -77,14 +85,14 @@ const JAMB: f64 = 0.6;
 const LINED: f64 = 0.6;
 /// A wall that goes on for so long, metres, on both sides of a gap, edge pixels along it for that share, parts what lies before
 /// it from what lies behind, and its gap may be so many times as wide as others.
-const GATE: f64 = 1.0;
+const FLANK: f64 = 1.0;
 const WIDER: f64 = 2.0;
 /// On one side at least it goes on for so many times the gap's width, edge pixels along it for this share of that: rows' ends
 /// are as wide as the aisles between.
 const LONG: f64 = 2.0;
 const LINED_LONG: f64 = 0.5;
-/// What is open over this share is a gap, be something small there.
-const OPEN: f64 = 0.9;
+/// What is free over this share is a gap, be something small there.
+const FREE: f64 = 0.9;
 
 /// A jamb lies within so many pixels of a bar's end.
 const JAMB_PIXELS: i32 = 4;
@@ -275,43 +283,50 @@ impl<'a> Line<'a> {
                 let mut after = || (end..to).take(most).take_while(|&step| !is_free(step)).count();
                 (end - start) as f64 >= crack && (before == most || after() == most)
             });
-            bars.extend(gaps.into_iter().map(|gap| self.bar(gap, false)));
+            bars.extend(gaps.into_iter().map(|gap| self.bar(gap, None)));
         }
         bars
     }
 
     /// The gaps in a wall that goes on along the line on both sides, edge pixels along it at some steps in ascending order.
     fn gates(&self, lined: &[i64], widest: f64) -> Vec<Bar> {
-        let [crack, widest, wall] = [CRACK, widest, GATE].map(|metres| self.raster.pixels(metres));
-        let (near, wall) = (self.near(), wall.max(1.0) as i64);
-        let least = (LINED * wall as f64).ceil() as usize;
-        // The last of so many steps at which a wall may end, and the first at which one may begin.
-        let ends = lined.windows(least).filter(|some| some[least - 1] - some[0] < wall);
-        let (mut gates, mut last) = (Vec::new(), None);
-        for [first, end] in ends.map(|some| [some[0], some[least - 1]]) {
-            if let Some(before) = last.filter(|before| (first - before) as f64 > crack) {
-                let is_free = |step: &i64| self.is_free(*step, near);
-                let start = (before + 1..first).find(is_free);
-                let gap = start.zip((before + 1..first).rfind(is_free)).map(|(start, end)| [start, end + 1]);
-                let count = |steps: Range<i64>| {
-                    let [from, to] = [steps.start, steps.end].map(|end| lined.partition_point(|step| *step < end));
-                    (to - from) as f64
-                };
-                let is_gate = |&[start, end]: &[i64; 2]| {
-                    let width = (end - start) as f64;
-                    let long = (LONG * width) as i64;
-                    (crack..=widest).contains(&width)
-                        && count(start - long..start).max(count(end..end + long)) >= LINED_LONG * long as f64
-                        && (start..end).filter(is_free).count() as f64 >= OPEN * width
-                };
-                gates.extend(gap.filter(is_gate).map(|gap| self.bar(gap, true)));
+        let [crack, widest, flank] = [CRACK, widest, FLANK].map(|metres| self.raster.pixels(metres));
+        let (near, span) = (self.near(), self.span());
+        let least = (LINED * flank).ceil() as usize;
+        // What lies beyond the raster is in no key.
+        let on_raster = [span.0, span.1].map(|end| lined.partition_point(|step| *step < end));
+        let lined = &lined[on_raster[0]..on_raster[1]];
+        let is_long = |steps: Range<i64>| {
+            let [from, to] = [steps.start, steps.end].map(|end| lined.partition_point(|step| *step < end));
+            (to - from) as f64 >= LINED_LONG * (steps.end - steps.start) as f64
+        };
+        // Pieces of the wall: the first and the last of enough steps close together.
+        let pieces = lined.windows(least).map(|some| [some[0], some[least - 1]]);
+        let pieces = pieces.filter(|[first, last]| ((last - first) as f64) < flank);
+        let (mut gates, mut wall_up_to) = (Vec::new(), None);
+        for [first, last] in pieces {
+            let between = wall_up_to.replace(last).map(|before: i64| before + 1..first);
+            let may_be_gap = |between: &Range<i64>| {
+                let length = (between.end - between.start) as f64;
+                length >= crack && length <= widest + 2.0 * flank
+            };
+            let Some(between) = between.filter(may_be_gap) else { continue };
+            let is_free = |step: &i64| self.is_free(*step, near);
+            let Some((start, end)) = between.clone().find(is_free).zip(between.rev().find(is_free)) else { continue };
+            let (end, width) = (end + 1, (end + 1 - start) as f64);
+            let long = (LONG * width) as i64;
+            let gate = [is_long(start - long..start), is_long(end..end + long)];
+            if (crack..=widest).contains(&width)
+                && gate.contains(&true)
+                && (start..end).filter(is_free).count() as f64 >= FREE * width
+            {
+                gates.push(self.bar([start, end], Some(gate)));
             }
-            last = Some(end);
         }
         gates
     }
 
-    fn bar(&self, [start, end]: [i64; 2], is_gate: bool) -> Bar {
-        Bar { ends: [self.place(start), self.place(end - 1)], is_gate }
+    fn bar(&self, [start, end]: [i64; 2], gate: Option<[bool; 2]>) -> Bar {
+        Bar { ends: [self.place(start), self.place(end - 1)], gate }
     }
 }

@@ -54,8 +54,6 @@ pub struct Islands {
     pub filled: Spans,
     /// Pixels of those that are too thick for one.
     pub solid: Spans,
-    /// Pixels that are no island's: all that hangs together with the raster's border.
-    pub border: Spans,
 }
 
 /// Sums over the pixels of an island, from its first one.
@@ -102,15 +100,9 @@ impl Sums {
     }
 }
 
-/// Looks at all that is not seen free and does not hang together with the raster's border.
-pub fn find(raster: &Raster) -> Islands {
-    #[derive(Clone, Copy, PartialEq)]
-    enum Mark {
-        None,
-        Border,
-        Filled,
-        Solid,
-    }
+/// All that is not seen free in runs, of which thing each is a part, and how many things there are. The first hangs together
+/// with the raster's border, from which the first run is.
+fn things(raster: &Raster) -> (Vec<Run>, Vec<u32>, usize) {
     let width = raster.width;
     let mut runs: Vec<Run> = Vec::new();
     for y in 0..raster.height {
@@ -119,14 +111,31 @@ pub fn find(raster: &Raster) -> Islands {
     let mut sets = Sets::new(runs.len());
     touching(&runs, width, 1, |own, below| sets.join_first(own as u32, below as u32));
     let (numbers, count) = sets.numbered();
+    (runs, numbers, count)
+}
+
+/// Pixels of what hangs together with the raster's border: no island's. There are many, which is why they are not kept.
+pub fn border(raster: &Raster) -> Spans {
+    let (runs, numbers, _) = things(raster);
+    Spans(runs.into_iter().zip(numbers).filter(|(_, number)| *number == 1).map(|(run, _)| run).collect())
+}
+
+/// Looks at all that is not seen free and does not hang together with the raster's border.
+pub fn find(raster: &Raster) -> Islands {
+    #[derive(Clone, Copy, PartialEq)]
+    enum Mark {
+        None,
+        Filled,
+        Solid,
+    }
+    let (runs, numbers, count) = things(raster);
     let mut sums = vec![Sums::default(); count + 1];
     for (run, &number) in runs.iter().zip(&numbers) {
         sums[number as usize].add(raster.place(run.pixels().start), run.len() as f64);
     }
     let mut found = Islands::default();
     let mut marks = vec![Mark::None; count + 1];
-    // The first hangs together with the border, from which the first run is.
-    marks[1.min(count)] = Mark::Border;
+    // The first is no island.
     for (mark, sums) in marks.iter_mut().zip(&sums).skip(2) {
         let (middle, [length, thickness]) = sums.extent();
         if length <= raster.pixels(BLOB) {
@@ -147,6 +156,5 @@ pub fn find(raster: &Raster) -> Islands {
     };
     found.filled = marked(Mark::Filled);
     found.solid = marked(Mark::Solid);
-    found.border = marked(Mark::Border);
     found
 }

@@ -223,24 +223,29 @@ impl<'a> Joining<'a> {
     fn join_dead_ends(&mut self) {
         // What each set opens into; itself where that is several.
         let mut into: Vec<Option<u32>> = vec![None; self.wall.len()];
-        for n in 0..self.stretches.len() {
-            let [one, other] = self.sides(n);
+        let parting: Vec<(usize, [u32; 2])> =
+            (0..self.stretches.len()).map(|n| (n, self.sides(n))).filter(|(_, [one, other])| one != other).collect();
+        for &(_, [one, other]) in &parting {
             for [own, other] in [[one, other], [other, one]] {
                 let known = &mut into[own as usize];
-                *known = if known.is_none_or(|known| known == other) { Some(other) } else { Some(own) };
+                *known = Some(if known.is_none_or(|known| known == other) { other } else { own });
             }
         }
-        for n in 0..self.stretches.len() {
+        let is_dead_end = |&(n, sides): &(usize, [u32; 2])| {
+            let [one, other] = self.beyond_both(n, sides, f64::INFINITY);
+            let tighter = usize::from(other < one);
+            let [own, next] = [sides[tighter], sides[1 - tighter]];
+            let width = self.width(n);
+            into[own as usize] == Some(next)
+                && self.area[own as usize] as f64 <= LONGEST * width * width
+                && width >= self.rules.openness * one.min(other)
+        };
+        let is_gate = |(n, _): &(usize, [u32; 2])| self.bars[self.stretches[*n].bar].is_gate();
+        let dead_ends: Vec<_> = parting.into_iter().filter(is_gate).filter(is_dead_end).collect();
+        for (n, _) in dead_ends {
             let sides = self.sides(n);
-            if self.bars[self.stretches[n].bar].is_gate && sides[0] != sides[1] {
-                let [one, other] = self.beyond_both(n, sides, f64::INFINITY);
-                let tighter = usize::from(other < one);
-                let width = self.width(n);
-                let is_dead_end = into[sides[tighter] as usize] == Some(sides[1 - tighter])
-                    && self.area[sides[tighter] as usize] as f64 <= LONGEST * width * width;
-                if is_dead_end && width >= self.rules.openness * one.min(other) {
-                    self.join(sides);
-                }
+            if sides[0] != sides[1] {
+                self.join(sides);
             }
         }
     }
@@ -263,24 +268,23 @@ impl<'a> Joining<'a> {
         let small = area * self.raster.resolution.powi(2) <= self.rules.least_area;
         // A pixel more than it takes, for what floats round.
         let enough = if small || least <= tie { f64::INFINITY } else { width / (least - tie) + 1.0 };
-        let beyond = self.beyond_both(stretch, sides, enough);
-        let [one, other] = beyond;
+        let [one, other] = self.beyond_both(stretch, sides, enough);
         // What leads on from a gate as wide as it is a passage, and another region than the hall.
-        let is_passage = self.bars[self.stretches[stretch].bar].is_gate
+        let is_passage = self.bars[self.stretches[stretch].bar].is_gate()
             && self.goes_on(stretch, if one <= other { (sides[0], 1.0) } else { (sides[1], -1.0) }, width);
         let beyond = if is_passage { one.max(other) } else { one.min(other) };
         let share = if beyond > 0.0 { (width / beyond).min(1.0) } else { 1.0 };
         Openness { value: share + tie + if small { 10.0 } else { 0.0 }, stretch, ages }
     }
 
-    /// How wide the sets on both sides are beyond a stretch, pixels, or as much as is enough; but for a gate's the larger no
-    /// more than the smaller one.
+    /// How wide the sets on both sides are beyond a stretch, pixels, or as much as is enough; beside what is no gate the one of
+    /// more pixels only as far as it may be the tighter.
     fn beyond_both(&self, stretch: usize, sides: [u32; 2], enough: f64) -> [f64; 2] {
         let both = [(sides[0], 1.0), (sides[1], -1.0)];
         // The smaller one first: of the other it is enough to know that it is as wide.
         let first = usize::from(self.area[sides[1] as usize] < self.area[sides[0] as usize]);
         let one = self.beyond(stretch, both[first], enough);
-        let is_gate = self.bars[self.stretches[stretch].bar].is_gate;
+        let is_gate = self.bars[self.stretches[stretch].bar].is_gate();
         let other = self.beyond(stretch, both[1 - first], if is_gate { enough } else { one });
         if first == 0 { [one, other] } else { [other, one] }
     }

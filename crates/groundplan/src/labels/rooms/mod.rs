@@ -41,6 +41,7 @@ pub use gaps::Bar;
 pub use raster::{Part, Raster};
 use regions::Region;
 pub use runs::{Run, touching};
+use std::cell::LazyCell;
 
 /// A gap and a narrow whose ends are this near are one opening; so are pieces of openings that come this near, metres.
 const TOGETHER: f64 = 0.35;
@@ -48,13 +49,14 @@ const TOGETHER: f64 = 0.35;
 /// Where there are racks: convex polygons in the map frame.
 #[derive(Default)]
 pub struct Racked {
-    /// Ways along racks, racks with a rim round them, and what these leave of their rows: no doors are within them, but gates.
+    /// Ways along racks, racks with a rim round them, and what these leave of their rows: all doors within them are gates.
     pub doorless: Vec<Vec<[f64; 2]>>,
-    /// The ways by themselves: only across these are there gates,
+    /// The ways by themselves: gates lie across these.
     pub ways: Vec<Vec<[f64; 2]>>,
-    /// and none between racks that have others as deep across an aisle, and what these leave: a wall between two halls may look
-    /// like one that has none.
+    /// Racks that have others as deep across an aisle, with the rim: no gate's wall. What nobody saw between two halls may look
+    /// like a rack, but has no such other.
     pub racks: Vec<Vec<[f64; 2]>>,
+    /// What those leave of their rows: no gates lie there.
     pub left: Vec<Vec<[f64; 2]>>,
     /// What the racks stand on: what is free of it is no region.
     pub grounds: Vec<Vec<[f64; 2]>>,
@@ -94,8 +96,9 @@ impl Space {
         let mut bars = gaps::along_lines(evidence, &self.raster);
         bars.retain(|bar| !bar.is_at_solid(&self.raster));
         let together = self.raster.pixels(TOGETHER);
+        // Of gates most go again: they stand for no narrow.
         let near = Near::points(
-            (0..).zip(&bars).filter(|(_, bar)| !bar.is_gate).flat_map(|(n, gap)| gap.ends.map(|end| (n, end))),
+            (0..).zip(&bars).filter(|(_, bar)| !bar.is_gate()).flat_map(|(n, gap)| gap.ends.map(|end| (n, end))),
         );
         let fresh = |narrow: &&Bar| {
             let about = near.about(narrow.ends[0], together);
@@ -125,16 +128,22 @@ pub fn find<'d>(
     let crossed = Near::polygons(&corridors.iter().map(|corridor| corridor.around(longest)).collect::<Vec<_>>());
     let [doorless, ways, racks, left] = [&racked.doorless, &racked.ways, &racked.racks, &racked.left]
         .map(|all| Within { near: Near::polygons(all), all });
+    // The wall of a hall hangs together with what lies around the map.
+    let border = LazyCell::new(|| islands::border(raster));
+    let to_map = |place| evidence.grid.frame.to_metres(raster.to_grid(place));
     bars.retain(|bar| {
-        let ends = bar.ends.map(|end| evidence.grid.frame.to_metres(raster.to_grid(end)));
+        let ends = bar.ends.map(to_map);
         let middle = [0, 1].map(|axis| f64::midpoint(ends[0][axis], ends[1][axis]));
-        if bar.is_gate {
-            let is_between_racks =
-                || racks.hold(middle) || left.hold(middle) || ends.iter().all(|end| racks.hold(*end));
-            return ways.hold(middle) && bar.is_at_border(raster) && !is_between_racks();
-        }
-        !doorless.hold(middle)
-            && !crossed.at(middle).iter().any(|&corridor| corridors[corridor as usize].is_crossed(ends))
+        let Some(is_long) = bar.gate else {
+            return !doorless.hold(middle)
+                && !crossed.at(middle).iter().any(|&corridor| corridors[corridor as usize].is_crossed(ends));
+        };
+        let flanks = bar.flanks(raster).map(to_map);
+        ways.hold(middle)
+            && !racks.hold(middle)
+            && !left.hold(middle)
+            && (0..2).any(|side| is_long[side] && !racks.hold(flanks[side]))
+            && bar.has_jamb_in(raster, &border)
     });
     let parameters = evidence.parameters;
     let rules = Rules { openness: parameters.rooms_openness, least_area: parameters.rooms_min_area };
