@@ -10,6 +10,8 @@ use std::collections::BTreeSet;
 
 /// Of rows some bays are empty when so much of them is open as wide, besides their ways.
 const OPEN: f64 = 0.02;
+/// Of a way no less than this share of its width is left where goods reach into it.
+const LEFT: f64 = 0.6;
 /// What is open so near to a way is of that, metres.
 const NEAR: f64 = 0.3;
 
@@ -46,7 +48,10 @@ fn expected_of(place: &Place, strips: &[Strip], n: usize, are_bare: bool) -> Opt
     let is_way = |other: &Passing| other.is_within && other.is_whole() || own.racks > 1 && other.rows == own.rows;
     let is_left_out = |way: usize| way == n || is_way(&place.passing[way]) || !are_alike(strips[way].width(), width);
     let places = |columns: usize| columns as f64 * place.views[0].cell / width;
-    let of_row = |row: usize| open_without(place, strips, row, width, are_bare, is_left_out).map(places);
+    // Goods reach into it in some rows: what is open elsewhere as far as it is there counts as well.
+    let free = own.rows.iter().map(|&row| widest_within(place, &strips[n], row)).fold(width, f64::min);
+    let least = free.max(LEFT * width);
+    let of_row = |row: usize| open_without(place, strips, row, least, are_bare, is_left_out).map(places);
     let all: Vec<[f64; 2]> = part.iter().map(|&row| of_row(row)).collect();
     let [open, count] = all.iter().fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
     // As if half a place more were open and one more were there: few tell little.
@@ -56,6 +61,14 @@ fn expected_of(place: &Place, strips: &[Strip], n: usize, are_bare: bool) -> Opt
     // As many rows one beside another begin at each but the last ones.
     let firsts = (part.len() + 1).saturating_sub(own.racks).max(1) as f64;
     Some(chance * firsts * all.iter().map(|[_, count]| *count).fold(0.0, f64::max))
+}
+
+/// How much of what a strip crosses of a row is open in one piece, metres.
+fn widest_within(place: &Place, strip: &Strip, row: usize) -> f64 {
+    let [from, to] = columns(place, strip, row, 0.0);
+    let within = |(first, last): Run| last.min(to).saturating_sub(first.max(from));
+    let widest = place.shelves(row).open().into_iter().map(within).max().unwrap_or(0);
+    widest as f64 * place.views[0].cell / seldom::AS_WIDE
 }
 
 /// How many columns of a row are open over as much as a width, and how many there are, both without those of its ways.
