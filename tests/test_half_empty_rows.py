@@ -4,9 +4,12 @@ bars across the rows' ends tell ways from them."""
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import pytest
+from _legs import Box, hall, legs
 from shapely import Polygon
 
 import groundplan
@@ -115,3 +118,25 @@ def test_what_posts_alone_part_from_the_way_past_the_ends_of_rows_is_their_last_
     parted = [one.distance(two) for one, two in itertools.combinations(ways, 2) if not one.intersects(two)]
     # Of two that lie side by side between the ends of both rows of the other hall one is a way, and which is not told.
     assert [gap for gap in parted if gap < 0.5] == pytest.approx([0.3], abs=0.05)
+
+
+@pytest.mark.parametrize(("share", "seed"), [(0.33, 44), (0.33, 56), (0.4, 43), (0.4, 44)])
+def test_empty_bays_in_line_with_bays_that_goods_reach_into_are_no_way(share: float, seed: int) -> None:
+    # Eight rows of two racks with so much of their room taken. Of five rows one bay in line is empty, but for a pallet
+    # at its side in two of them.
+    random = np.random.default_rng(seed)
+
+    def boxes() -> Iterator[Box]:
+        for row, rack in itertools.product(range(8), range(2)):
+            low = 3.0 + 5.2 * row + 1.1 * rack
+            yield from legs(4.0, low, 13, 1.1, 3.2)
+            for bay, place in itertools.product(range(13), range(3)):
+                stands = random.random() < share
+                if bay == 11 and 1 <= row <= 5:
+                    stands = (row, rack, place) in ((1, 0, 2), (2, 1, 0))
+                if stands:
+                    left = 4.15 + 3.2 * bay + place
+                    yield left, low + 0.05, left + 0.9, low + 1.05
+
+    survey = groundplan.survey(hall(49.7, 44.6, boxes(), 17.0), resolution=0.05)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 14
