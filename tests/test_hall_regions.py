@@ -48,6 +48,7 @@ def test_a_passage_between_two_halls_is_a_region_with_a_door_at_each_end() -> No
     passage, *halls = areas(survey)
     assert passage == pytest.approx(8.0 * 2.8, rel=0.15) and len(halls) == 2
     assert [door["width"] for door in survey.of_kind("door")] == pytest.approx([2.8, 2.8], abs=0.15)
+    assert sorted(region["use"] for region in survey.of_kind("region")) == ["corridor", "hall", "hall"]
 
 
 def test_a_passage_shorter_than_wide_parts_two_halls_all_the_same() -> None:

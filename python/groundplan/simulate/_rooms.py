@@ -25,25 +25,20 @@ def rooms(plan: GroundPlan, picture: Picture, frame: Frame) -> tuple[dict[str, A
     In the picture are the rooms that were observed, whole, whatever stands in them or was not seen of them; what of a
     doorway lies within the wall belongs to neither room, nor do the pixels of the walls' faces.
     """
-    height, width = picture.pixels.shape
-    image = np.full((height, width), _DIVIDER, dtype=np.uint8)
-
-    def drawn(ring: list[Point]) -> npt.NDArray[np.float64]:
-        corners: npt.NDArray[np.float64] = (np.array(ring) - picture.origin) / picture.resolution
-        return corners
+    image = np.full(picture.pixels.shape, _DIVIDER, dtype=np.uint8)
 
     entries = []
     for room in plan.rooms:
         rings = [_outline(ring, frame) for ring in (room.polygon, *room.holes)]
-        mask = fill([drawn(ring) for ring in rings], (height, width))
-        observed = bool(mask.any() and np.mean(picture.pixels[mask] != UNKNOWN) >= _SEEN)
+        mask = _within(rings, picture)
+        observed = _observed(mask, picture)
         entry = {"polygon": [_point(p) for p in rings[0]], "use": room.use, "observed": observed}
         if room.holes:
             entry["holes"] = [[_point(p) for p in ring] for ring in rings[1:]]
         entries.append(entry)
         if observed:
             inner = [inset(room.polygon, _RIM), *(inset(hole, -_RIM) for hole in room.holes)]
-            core = fill([drawn(_outline(ring, frame)) for ring in inner], (height, width))
+            core = _within([_outline(ring, frame) for ring in inner], picture)
             image[mask & (core | (picture.pixels == FREE))] = _ROOM
     doors = [
         {
@@ -64,11 +59,20 @@ def halls(plan: GroundPlan, picture: Picture, frame: Frame) -> dict[str, Any]:
     entries = []
     for hall in plan.halls:
         ring = _outline(hall, frame)
-        corners: npt.NDArray[np.float64] = (np.array(ring) - picture.origin) / picture.resolution
-        seen = picture.pixels[fill([corners], picture.pixels.shape)]
-        observed = bool(seen.size and np.mean(seen != UNKNOWN) >= _SEEN)
+        observed = _observed(_within([ring], picture), picture)
         entries.append({"polygon": [_point(p) for p in ring], "observed": observed})
     return {"halls": entries}
+
+
+def _within(rings: list[list[Point]], picture: Picture) -> npt.NDArray[np.bool_]:
+    """Which pixels lie in an outline and not in its holes."""
+    height, width = picture.pixels.shape
+    return fill([(np.array(ring) - picture.origin) / picture.resolution for ring in rings], (height, width))
+
+
+def _observed(mask: npt.NDArray[np.bool_], picture: Picture) -> bool:
+    """Is enough of some pixels known?"""
+    return bool(mask.any() and np.mean(picture.pixels[mask] != UNKNOWN) >= _SEEN)
 
 
 def _point(p: Point) -> list[float]:

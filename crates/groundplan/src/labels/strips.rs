@@ -163,10 +163,9 @@ fn racked(
     let all: Vec<&Row> = rows.iter().collect();
     let kin = whole::have_kin(views, &all, &all);
     let with_kin: Vec<&Row> = all.iter().zip(kin).filter(|(_, has_kin)| *has_kin).map(|(row, _)| *row).collect();
-    let ways: Vec<_> = corridors.collect();
     Racked {
-        doorless: [ways.clone(), all.iter().map(|row| around(row)).collect(), left(&all)].concat(),
-        ways,
+        ways: corridors.collect(),
+        rows: rows.iter().map(around).chain(left(&all)).collect(),
         left: left(&with_kin),
         racks: with_kin.into_iter().map(around).collect(),
         grounds: rows.iter().map(|row| rectangle(&views[row.direction], row.along, row.across)).collect(),

@@ -42,6 +42,7 @@ pub use raster::{Part, Raster};
 use regions::Region;
 pub use runs::{Run, touching};
 use std::cell::LazyCell;
+use std::collections::BTreeMap;
 
 /// A gap and a narrow whose ends are this near are one opening; so are pieces of openings that come this near, metres.
 const TOGETHER: f64 = 0.35;
@@ -49,10 +50,10 @@ const TOGETHER: f64 = 0.35;
 /// Where there are racks: convex polygons in the map frame.
 #[derive(Default)]
 pub struct Racked {
-    /// Ways along racks, racks with a rim round them, and what these leave of their rows: all doors within them are gates.
-    pub doorless: Vec<Vec<[f64; 2]>>,
-    /// The ways by themselves: gates lie across these.
+    /// Ways along racks: all doors within them are gates.
     pub ways: Vec<Vec<[f64; 2]>>,
+    /// Racks with a rim round them, and what these leave of their rows: no other doors are within them, either.
+    pub rows: Vec<Vec<[f64; 2]>>,
     /// Racks that have others as deep across an aisle, with the rim: no gate's wall. What nobody saw between two halls may look
     /// like a rack, but has no such other.
     pub racks: Vec<Vec<[f64; 2]>>,
@@ -68,9 +69,25 @@ struct Within<'a> {
     all: &'a [Vec<[f64; 2]>],
 }
 
-impl Within<'_> {
+impl<'a> Within<'a> {
+    fn new(all: &'a [Vec<[f64; 2]>]) -> Self {
+        Self { near: Near::polygons(all), all }
+    }
+
     fn hold(&self, point: [f64; 2]) -> bool {
-        self.near.at(point).iter().any(|&n| outline::holds(&self.all[n as usize], point))
+        self.at(point).next().is_some()
+    }
+
+    /// What part of some points each polygon holds that holds any.
+    fn shares(&self, points: &[[f64; 2]]) -> impl Iterator<Item = f64> {
+        let mut counts = BTreeMap::new();
+        points.iter().flat_map(|&point| self.at(point)).for_each(|n| *counts.entry(n).or_insert(0) += 1);
+        counts.into_values().map(|count| f64::from(count) / points.len() as f64)
+    }
+
+    /// Those that hold a point.
+    fn at(&self, point: [f64; 2]) -> impl Iterator<Item = u32> {
+        self.near.at(point).iter().copied().filter(move |&n| outline::holds(&self.all[n as usize], point))
     }
 }
 
@@ -126,8 +143,8 @@ pub fn find<'d>(
     let raster = &space.raster;
     let longest = bars.iter().map(Bar::length).fold(0.0, f64::max) * raster.resolution;
     let crossed = Near::polygons(&corridors.iter().map(|corridor| corridor.around(longest)).collect::<Vec<_>>());
-    let [doorless, ways, racks, left] = [&racked.doorless, &racked.ways, &racked.racks, &racked.left]
-        .map(|all| Within { near: Near::polygons(all), all });
+    let [ways, rows, racks, left, grounds] =
+        [&racked.ways, &racked.rows, &racked.racks, &racked.left, &racked.grounds].map(|all| Within::new(all));
     // The wall of a hall hangs together with what lies around the map.
     let border = LazyCell::new(|| islands::border(raster));
     let to_map = |place| evidence.grid.frame.to_metres(raster.to_grid(place));
@@ -135,7 +152,8 @@ pub fn find<'d>(
         let ends = bar.ends.map(to_map);
         let middle = [0, 1].map(|axis| f64::midpoint(ends[0][axis], ends[1][axis]));
         let Some(is_long) = bar.gate else {
-            return !doorless.hold(middle)
+            return !ways.hold(middle)
+                && !rows.hold(middle)
                 && !crossed.at(middle).iter().any(|&corridor| corridors[corridor as usize].is_crossed(ends));
         };
         let flanks = bar.flanks(raster).map(to_map);
@@ -148,7 +166,7 @@ pub fn find<'d>(
     let parameters = evidence.parameters;
     let rules = Rules { openness: parameters.rooms_openness, least_area: parameters.rooms_min_area };
     let cells = cells::find(raster, &bars, &rules, evidence.threads);
-    let (regions, numbers) = regions::find(evidence, space, cells.regions, racked, squares);
+    let (regions, numbers) = regions::find(evidence, space, cells.regions, [&ways, &grounds], squares);
     let mut order = vec![0; regions.len() + 1];
     for (n, region) in regions.iter().enumerate() {
         order[region.number as usize] = n;

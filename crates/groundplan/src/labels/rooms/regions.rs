@@ -1,13 +1,12 @@
 //! The pieces of free space that stay regions: each made one connected piece, with its place, its order and its purpose.
 
-use super::super::near::Near;
 use super::super::places::Squares;
-use super::super::{Evidence, Purpose, outline};
+use super::super::{Evidence, Purpose};
 use super::fill::fill_runs;
 use super::raster::Raster;
 use super::rays;
 use super::runs::{Run, Runs};
-use super::{Racked, Space, Width};
+use super::{Space, Width, Within};
 use crate::bands::map_each;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -19,6 +18,8 @@ const ALONE: (f64, f64) = (0.5, 0.15);
 const LONG: f64 = 4.2;
 /// And a corridor when it has two doors, and one at least for so many metres of its length.
 const DOOR_EVERY: f64 = 15.0;
+/// So is a passage: what a single way fills to such a part, between two doors.
+const FILLED: f64 = 0.6;
 /// Other regions at least so large are halls, square metres.
 const HALL: f64 = 150.0;
 /// Regions are in one row when no gap wider than this parts them across, metres.
@@ -42,6 +43,8 @@ pub struct Region {
     measured: usize,
     /// Its middle in the squares that give names.
     pub place: [f64; 2],
+    /// Does a single way fill it?
+    is_way: bool,
 }
 
 impl Region {
@@ -50,7 +53,7 @@ impl Region {
         let width = mean_width(self.distances, self.measured);
         let length = self.pixels as f64 / width;
         let is_long = length >= LONG * width && doors as f64 * raster.pixels(DOOR_EVERY) >= length;
-        if doors >= 2 && is_long {
+        if doors >= 2 && (is_long || self.is_way) {
             Purpose::Corridor
         } else if area >= HALL {
             Purpose::Hall
@@ -112,7 +115,7 @@ pub fn find(
     evidence: &Evidence,
     Space { raster, clearance, .. }: &Space,
     mut numbers: Runs,
-    racked: &Racked,
+    [ways, grounds]: [&Within; 2],
     squares: &Squares,
 ) -> (Vec<Region>, Runs) {
     let (pieces, count) = numbers.pieces();
@@ -133,18 +136,16 @@ pub fn find(
         }
     }
     let radius = raster.pixels(ALONE.1);
-    let looks = if racked.grounds.is_empty() {
+    let looks = if grounds.all.is_empty() {
         Vec::new()
     } else {
         samples(&numbers, |n| pieces[n], &all.iter().map(|piece| piece.pixels).collect::<Vec<_>>(), LOOKS)
     };
-    let grounds = Near::polygons(&racked.grounds);
+    let to_map = |pixel: usize| evidence.grid.frame.to_metres(raster.to_grid(raster.place(pixel)));
     let within_rack = |n: usize| {
-        let on_rack = |pixel: &usize| {
-            let at = evidence.grid.frame.to_metres(raster.to_grid(raster.place(*pixel)));
-            grounds.at(at).iter().any(|&ground| outline::holds(&racked.grounds[ground as usize], at))
-        };
-        looks.get(n).is_some_and(|looks| 2 * looks.iter().filter(|pixel| on_rack(pixel)).count() > looks.len())
+        looks
+            .get(n)
+            .is_some_and(|looks| 2 * looks.iter().filter(|&&pixel| grounds.hold(to_map(pixel))).count() > looks.len())
     };
     let mut count = 0;
     let names: Vec<u32> = (0..all.len())
@@ -163,7 +164,7 @@ pub fn find(
     drop((pieces, looks));
     let numbers = fill_runs(raster, numbers);
     let mut regions: Vec<Region> = (1..=count)
-        .map(|number| Region { number, pixels: 0, at: 0, distances: 0.0, measured: 0, place: [0.0; 2] })
+        .map(|number| Region { number, pixels: 0, at: 0, distances: 0.0, measured: 0, place: [0.0; 2], is_way: false })
         .collect();
     for run in &numbers.all {
         regions[run.number as usize - 1].pixels += run.len();
@@ -183,8 +184,11 @@ pub fn find(
     let counts: Vec<usize> = std::iter::once(0).chain(regions.iter().map(|region| region.pixels)).collect();
     let pixels = samples(&numbers, |n| numbers.all[n].number, &counts, SAMPLES);
     let threads = evidence.threads.min(regions.len() / SOME + 1);
-    let places = map_each(regions.len(), threads, |n| middle(evidence, raster, &pixels[n + 1], squares));
-    regions.iter_mut().zip(places).for_each(|(region, place)| region.place = place);
+    let told = map_each(regions.len(), threads, |n| {
+        let points: Vec<[f64; 2]> = pixels[n + 1].iter().map(|&pixel| to_map(pixel)).collect();
+        (middle(&points, squares), ways.shares(&points).any(|share| share >= FILLED))
+    });
+    regions.iter_mut().zip(told).for_each(|(region, told)| (region.place, region.is_way) = told);
     sort_by_rows(&mut regions);
     (regions, numbers)
 }
@@ -211,10 +215,8 @@ fn samples(runs: &Runs, number: impl Fn(usize) -> u32, counts: &[usize], most: u
 
 /// Where a region's middle lies in the squares: between its ends along and across, without what sticks out. What
 /// stands in a hall moves its mean, but not its ends.
-fn middle(evidence: &Evidence, raster: &Raster, pixels: &[usize], squares: &Squares) -> [f64; 2] {
-    let places =
-        pixels.iter().map(|&pixel| squares.place(evidence.grid.frame.to_metres(raster.to_grid(raster.place(pixel)))));
-    let places: Vec<[f64; 2]> = places.collect();
+fn middle(points: &[[f64; 2]], squares: &Squares) -> [f64; 2] {
+    let places: Vec<[f64; 2]> = points.iter().map(|&point| squares.place(point)).collect();
     let ends = (STICKS_OUT * places.len() as f64) as usize;
     [0, 1].map(|axis| {
         let mut values: Vec<f64> = places.iter().map(|place| place[axis]).collect();
