@@ -162,7 +162,7 @@ pub enum Label {
 pub enum Purpose {
     /// Of one piece.
     Room,
-    /// Long, and led into from its sides.
+    /// Long, and led into from its sides; or a passage, which one way fills from door to door.
     Corridor,
     /// Large.
     Hall,

@@ -1,6 +1,8 @@
 //! Things by their places, in square buckets, so that those near a point or in a polygon are found without asking all.
 
+use super::outline;
 use crate::ends::{around, wider};
+use std::collections::BTreeMap;
 
 /// A little more than rounding may move a point, metres.
 const SLACK: f64 = 1e-3;
@@ -147,5 +149,34 @@ impl Near {
                 }
             }
         }
+    }
+}
+
+/// Convex polygons of which it is asked which hold a point.
+pub struct Polygons<'a> {
+    near: Near,
+    pub all: &'a [Vec<[f64; 2]>],
+}
+
+impl<'a> Polygons<'a> {
+    pub fn new(all: &'a [Vec<[f64; 2]>]) -> Self {
+        Self { near: Near::polygons(all), all }
+    }
+
+    /// Does any hold a point?
+    pub fn hold(&self, point: [f64; 2]) -> bool {
+        self.at(point).next().is_some()
+    }
+
+    /// What part of some points each polygon holds that holds any.
+    pub fn shares(&self, points: &[[f64; 2]]) -> impl Iterator<Item = f64> {
+        let mut counts = BTreeMap::new();
+        points.iter().flat_map(|&point| self.at(point)).for_each(|n| *counts.entry(n).or_insert(0) += 1);
+        counts.into_values().map(|count| f64::from(count) / points.len() as f64)
+    }
+
+    /// Those that hold a point.
+    fn at(&self, point: [f64; 2]) -> impl Iterator<Item = u32> {
+        self.near.at(point).iter().copied().filter(move |&n| outline::holds(&self.all[n as usize], point))
     }
 }

@@ -9,8 +9,7 @@
 use super::period::{self, Period};
 use crate::grid::{State, angle_between};
 use crate::labels::Evidence;
-use crate::labels::near::Near;
-use crate::labels::outline;
+use crate::labels::near::Polygons;
 use crate::labels::rooms::Raster;
 use std::f64::consts::FRAC_PI_2;
 
@@ -197,7 +196,7 @@ pub fn angles(directions: &[f64]) -> Vec<f64> {
 fn blobs(evidence: &Evidence, raster: &Raster, grounds: &[Vec<[f64; 2]>]) -> Vec<Blob> {
     let (least, most) = (evidence.parameters.pillars_min_width, evidence.parameters.pillars_max_width);
     let frame = &evidence.grid.frame;
-    let near = Near::polygons(grounds);
+    let grounds = Polygons::new(grounds);
     let mut blobs = Vec::new();
     for island in &raster.islands.small {
         let width = (island.length * island.thickness).sqrt() * raster.resolution;
@@ -218,7 +217,7 @@ fn blobs(evidence: &Evidence, raster: &Raster, grounds: &[Vec<[f64; 2]>]) -> Vec
                 })
             }
         });
-        if occupied && !near.at(at).iter().any(|&ground| outline::holds(&grounds[ground as usize], at)) {
+        if occupied && !grounds.hold(at) {
             blobs.push(Blob { at, width });
         }
     }

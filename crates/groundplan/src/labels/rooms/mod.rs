@@ -26,10 +26,10 @@ mod regions;
 mod runs;
 mod squared;
 
-use super::near::Near;
+use super::near::{Near, Polygons};
 use super::places::{Placed, Squares};
 use super::recall::Recall;
-use super::{Division, Evidence, Label, outline};
+use super::{Division, Evidence, Label};
 use crate::grid::{Grid, State, tidy};
 use cells::Rules;
 use clearance::Clearance;
@@ -42,7 +42,6 @@ pub use raster::{Part, Raster};
 use regions::Region;
 pub use runs::{Run, touching};
 use std::cell::LazyCell;
-use std::collections::BTreeMap;
 
 /// A gap and a narrow whose ends are this near are one opening; so are pieces of openings that come this near, metres.
 const TOGETHER: f64 = 0.35;
@@ -50,7 +49,7 @@ const TOGETHER: f64 = 0.35;
 /// Where there are racks: convex polygons in the map frame.
 #[derive(Default)]
 pub struct Racked {
-    /// Ways along racks: all doors within them are gates.
+    /// Ways along racks: all doors within them are gates, and what one fills between two doors is a passage.
     pub ways: Vec<Vec<[f64; 2]>>,
     /// Racks with a rim round them, and what these leave of their rows: no other doors are within them, either.
     pub rows: Vec<Vec<[f64; 2]>>,
@@ -61,34 +60,6 @@ pub struct Racked {
     pub left: Vec<Vec<[f64; 2]>>,
     /// What the racks stand on: what is free of it is no region.
     pub grounds: Vec<Vec<[f64; 2]>>,
-}
-
-/// Convex polygons of which it is asked whether any holds a point.
-struct Within<'a> {
-    near: Near,
-    all: &'a [Vec<[f64; 2]>],
-}
-
-impl<'a> Within<'a> {
-    fn new(all: &'a [Vec<[f64; 2]>]) -> Self {
-        Self { near: Near::polygons(all), all }
-    }
-
-    fn hold(&self, point: [f64; 2]) -> bool {
-        self.at(point).next().is_some()
-    }
-
-    /// What part of some points each polygon holds that holds any.
-    fn shares(&self, points: &[[f64; 2]]) -> impl Iterator<Item = f64> {
-        let mut counts = BTreeMap::new();
-        points.iter().flat_map(|&point| self.at(point)).for_each(|n| *counts.entry(n).or_insert(0) += 1);
-        counts.into_values().map(|count| f64::from(count) / points.len() as f64)
-    }
-
-    /// Those that hold a point.
-    fn at(&self, point: [f64; 2]) -> impl Iterator<Item = u32> {
-        self.near.at(point).iter().copied().filter(move |&n| outline::holds(&self.all[n as usize], point))
-    }
 }
 
 /// The free space of a map.
@@ -144,7 +115,7 @@ pub fn find<'d>(
     let longest = bars.iter().map(Bar::length).fold(0.0, f64::max) * raster.resolution;
     let crossed = Near::polygons(&corridors.iter().map(|corridor| corridor.around(longest)).collect::<Vec<_>>());
     let [ways, rows, racks, left, grounds] =
-        [&racked.ways, &racked.rows, &racked.racks, &racked.left, &racked.grounds].map(|all| Within::new(all));
+        [&racked.ways, &racked.rows, &racked.racks, &racked.left, &racked.grounds].map(|all| Polygons::new(all));
     // The wall of a hall hangs together with what lies around the map.
     let border = LazyCell::new(|| islands::border(raster));
     let to_map = |place| evidence.grid.frame.to_metres(raster.to_grid(place));

@@ -1,12 +1,13 @@
 //! The pieces of free space that stay regions: each made one connected piece, with its place, its order and its purpose.
 
+use super::super::near::Polygons;
 use super::super::places::Squares;
 use super::super::{Evidence, Purpose};
 use super::fill::fill_runs;
 use super::raster::Raster;
 use super::rays;
 use super::runs::{Run, Runs};
-use super::{Space, Width, Within};
+use super::{Space, Width};
 use crate::bands::map_each;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -18,7 +19,7 @@ const ALONE: (f64, f64) = (0.5, 0.15);
 const LONG: f64 = 4.2;
 /// And a corridor when it has two doors, and one at least for so many metres of its length.
 const DOOR_EVERY: f64 = 15.0;
-/// So is a passage: what a single way fills to such a part, between two doors.
+/// So is a passage: what a single way, without a little at its sides, fills to such a part, between two doors.
 const FILLED: f64 = 0.6;
 /// Other regions at least so large are halls, square metres.
 const HALL: f64 = 150.0;
@@ -115,7 +116,7 @@ pub fn find(
     evidence: &Evidence,
     Space { raster, clearance, .. }: &Space,
     mut numbers: Runs,
-    [ways, grounds]: [&Within; 2],
+    [ways, grounds]: [&Polygons; 2],
     squares: &Squares,
 ) -> (Vec<Region>, Runs) {
     let (pieces, count) = numbers.pieces();
