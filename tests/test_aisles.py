@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 import shapely
+from _legs import hall as drawn
 
 import groundplan
 
@@ -215,6 +216,49 @@ def test_wide_aisles_end_with_their_racks_where_pillars_at_the_walls_recur() -> 
     assert len(wide) == 2
     for aisle in wide:
         assert sorted(end[1] for end in aisle["axis"]) == pytest.approx([8.0, 23.0], abs=0.3)
+
+
+def beside_a_way(width: float, length: float) -> npt.NDArray[np.uint8]:
+    """A way of 30 m by 3 m, and what opens into it and is shut at its end."""
+    blocks = [(0, 0, 32, 4), (0, 4, 1, 7), (31, 4, 32, 7), (0, 7, 14, 16), (14 + width, 7, 32, 16)]
+    return drawn(32.0, 16.0, iter([*blocks, (14, 7 + length, 14 + width, 16)]))
+
+
+@pytest.mark.parametrize(("width", "length"), [(3.0, 5.4), (2.6, 4.6)])
+def test_a_dead_end_as_wide_as_the_way_that_it_opens_into_is_an_aisle_though_it_is_short(
+    width: float, length: float
+) -> None:
+    survey = groundplan.survey(beside_a_way(width, length), resolution=RESOLUTION)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["T", "end", "end", "end"]
+
+
+@pytest.mark.parametrize(("width", "length"), [(3.0, 3.6), (1.5, 3.2)])
+def test_what_is_as_short_and_narrow_as_a_room_is_none(width: float, length: float) -> None:
+    survey = groundplan.survey(beside_a_way(width, length), resolution=RESOLUTION)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["end", "end"]
+
+
+@pytest.mark.parametrize(("slot", "are_aisles"), [(0.85, False), (1.05, False), (1.3, True), (1.8, True)])
+def test_slots_between_machines_are_no_aisles_where_they_are_narrower_than_corridors(
+    slot: float, are_aisles: bool
+) -> None:
+    lefts = [3.0, 7.0 + slot, 13.0 + 2 * slot, 18.0 + 3 * slot]
+    blocks = [(x, 3.0, x + width, 12.0) for x, width in zip(lefts, (4.0, 6.0, 5.0, 8.0), strict=True)]
+    survey = groundplan.survey(drawn(29.0 + 3 * slot, 15.0, iter(blocks)), resolution=RESOLUTION)
+    assert any(aisle["width"] < 2.0 for aisle in survey.of_kind("corridor")) == are_aisles
+
+
+def test_slots_that_meet_others_alone_are_none_either() -> None:
+    # From an aisle of 3 m a slot of 1.1 m leads on between blocks, and from that one of 0.5 m.
+    blocks = [(3.0, 3.0, 14.0, 23.0), (15.1, 3.0, 30.0, 12.0), (15.1, 12.5, 30.0, 23.0)]
+    survey = groundplan.survey(drawn(33.0, 26.0, iter(blocks)), resolution=RESOLUTION, labels_min_width=0.4)
+    assert all(aisle["width"] > 2.5 for aisle in survey.of_kind("corridor"))
+
+
+def test_a_narrow_aisle_along_a_rack_is_no_slot() -> None:
+    bays = [(3.0 + 2.7 * n, y, 5.6 + 2.7 * n, y + 1.1) for n in range(9) for y in (3.0, 5.2, 9.0) if n not in (3, 7)]
+    survey = groundplan.survey(drawn(30.3, 13.1, iter(bays)), resolution=RESOLUTION)
+    assert min(aisle["width"] for aisle in survey.of_kind("corridor")) == pytest.approx(1.1, abs=0.15)
 
 
 @pytest.mark.parametrize(("shelves", "aisles"), [(2, 0), (6, 5)])

@@ -255,6 +255,12 @@ impl Plan {
             (plan, across) = Self::new(views, faced, threads).with_others(evidence, look, views);
             plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }
+        let slots = slots::by_meetings(views, &plan.strips, &plan.meetings, &plan.racks);
+        if !slots.is_empty() {
+            let rest = (0..plan.strips.len()).filter(|n| !slots.contains(n)).map(|n| plan.strips[n].clone());
+            plan = Self::new(views, rest.collect(), threads);
+            plan.racks = plan.find_racks(views, on_legs, &standing, threads);
+        }
         let narrow = narrowed::past(views, &plan.strips, &plan.racks, &plan.reached(views), least);
         if narrow != plan.strips {
             plan = Self::new(views, narrow, threads);

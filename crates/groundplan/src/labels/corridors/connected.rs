@@ -9,6 +9,7 @@ use crate::labels::corridors::{ALIKE, ALONE, Strip};
 use crate::labels::junctions;
 use crate::labels::junctions::meeting::{Meeting, of_each};
 use crate::labels::junctions::shut;
+use crate::labels::rows::sections::WIDTH;
 use crate::labels::rows::{self, DEPTH};
 use crate::labels::view::turned::Turned;
 
@@ -46,9 +47,15 @@ pub fn of(views: &[Turned], mut strips: Vec<Strip>, threads: usize) -> (Vec<Stri
                 let [one, two] = arms(views, &strips, &meetings[m], n);
                 let free_end = usize::from(two > one);
                 // It has been drawn as far as its sides were seen, which may be where the junction begins: what leads on
-                // there is drawn on to its middle later, a room with jambs or a wall is not.
-                let is_parted = || (0..2).any(|side| shut::is_parted(view(n), &strips[n], side));
-                let within = if is_parted() { reach(&meetings[m], n) } else { 0.0 };
+                // there is drawn on to its middle later, a room with jambs or a wall is not. A dead end has a wall too, at
+                // its end alone: it is as wide as what it opens into.
+                let is_parted = |side: usize| shut::is_parted(view(n), &strips[n], side);
+                let is_alike = || {
+                    strips[n].width() >= WIDTH.0
+                        && meetings[m].corridors.iter().any(|&c| c != n && strips[n].is_as_wide(&strips[c]))
+                };
+                let parted = is_parted(1 - free_end) || is_parted(free_end) && !is_alike();
+                let within = if parted { reach(&meetings[m], n) } else { 0.0 };
                 let most = one.max(two).min(strips[n].length() - within);
                 let ends_unseen = || strips[n].is_ragged && shut::is_unseen(view(n), &strips[n], free_end);
                 let leads_on = goes_on(n, most, NICHE)

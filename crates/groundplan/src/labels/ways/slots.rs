@@ -1,16 +1,19 @@
-//! Slots in racks of several pallets' depth: places that are empty from one face on, which are no ways, be they as long as
-//! some.
+//! Slots, which are no ways, be they as long as some: in racks of several pallets' depth, where places are empty from one face on,
+//! and between machines.
 
 use super::across::crossing;
-use crate::ends::{around, holds, wider};
-use crate::labels::beside::placed;
+use crate::ends::{around, holds, overlap, sorted, wider};
+use crate::labels::beside::{self, placed};
 use crate::labels::corridors::Strip;
 use crate::labels::corridors::connected;
 use crate::labels::corridors::family;
-use crate::labels::junctions::meeting::CLUTTER;
-use crate::labels::rows::DEPTH;
+use crate::labels::junctions;
+use crate::labels::junctions::meeting::{CLUTTER, Meeting, of_each};
+use crate::labels::junctions::shut::sign;
 use crate::labels::rows::sections::WIDTH;
+use crate::labels::rows::{DEPTH, Row, SAME};
 use crate::labels::view::turned::Turned;
+use std::collections::BTreeSet;
 
 /// Two aisles that a rack lies between are so far apart at most, metres: one that is filled from both its faces.
 const DEEPEST: f64 = 2.0 * DEPTH.1;
@@ -20,6 +23,11 @@ const MOUTH: f64 = 0.6;
 const PAST: f64 = 2.0;
 /// A slot is narrower than this share of an aisle that it opens into.
 const NARROWER: f64 = family::LED_TO;
+/// One between machines is narrower than a corridor that people pass through (DIN 18040-1), metres, and than this share of ways.
+const CORRIDOR: f64 = 1.2;
+const HALF: f64 = 0.5;
+/// A rack is so many times as long as deep, or it may be a machine.
+const LONG: f64 = 4.0;
 
 /// The strips without slots. One leads from an aisle, is narrower than that, and something stands between its end and the next
 /// aisle, no farther off than a rack is deep. Or it leads through to that, is too narrow for a way, and few are alike.
@@ -70,4 +78,79 @@ pub fn without(views: &[Turned], strips: Vec<Strip>) -> Vec<Strip> {
     };
     let stays: Vec<bool> = (0..strips.len()).map(|n| !is_slot(n)).collect();
     strips.into_iter().zip(stays).filter_map(|(strip, stays)| stays.then_some(strip)).collect()
+}
+
+/// Which ways are slots between machines by what they meet: narrower than corridors, less than half as wide as ways commonly are and
+/// as each that they meet, at which they end and which goes on past them, no racks stand along both their sides and few are alike. What is no
+/// longer than rows are deep, or leads into the open, is none.
+pub fn by_meetings(views: &[Turned], strips: &[Strip], meetings: &[Meeting], racks: &[Row]) -> BTreeSet<usize> {
+    let most = CORRIDOR.min(HALF * common_width(strips));
+    if strips.iter().all(|strip| strip.width() >= most) {
+        return BTreeSet::new();
+    }
+    let placed = placed(views, strips.iter().map(Strip::place));
+    let stands = beside::placed(views, racks.iter().map(Row::place));
+    let met = of_each(meetings, strips.len());
+    let place = |n: usize, at: [f64; 2]| views[strips[n].direction].place(at)[0];
+    let leads_into_open = |n: usize, side: usize| {
+        let (own, view) = (&strips[n], &views[strips[n].direction]);
+        let end = own.along[side];
+        let beyond = view.columns(sorted([end, end + sign(side) * CORRIDOR]));
+        let [low, high] = wider(own.across, own.width() / 2.0);
+        !junctions::is_met(view, own, n, side, met[n].iter().map(|&m| &meetings[m]))
+            && view.mean_blocked(beyond, low, high) <= CLUTTER
+    };
+    let is_between_racks = |own: &Strip| {
+        let near = stands[own.direction].touching(own.along, wider(own.across, SAME));
+        let long = near.into_iter().map(|n| &racks[n]).filter(|rack| {
+            rack.length() >= LONG * rack.depth() && overlap(rack.along, own.along) > HALF * own.length()
+        });
+        let mut sides = [false; 2];
+        long.for_each(|rack| sides[usize::from(rack.across[0] + rack.across[1] > 2.0 * own.middle())] = true);
+        sides == [true; 2]
+    };
+    let may_be = |&n: &usize| {
+        let within = met[n].iter().map(|&m| connected::reach(&meetings[m], n)).sum::<f64>();
+        strips[n].width() < most
+            && strips[n].length() - within > DEPTH.1
+            && !(0..2).any(|side| leads_into_open(n, side))
+            && !is_between_racks(&strips[n])
+            && !connected::is_one_of_many(strips, &placed, n)
+    };
+    let is_beside = |n: usize, meeting: &Meeting, other: usize| {
+        let (own, aisle) = (&strips[n], &strips[other]);
+        let ends = own.along.map(|end| (place(n, meeting.at) - end).abs() - connected::reach(meeting, n));
+        own.width() < HALF * aisle.width()
+            && ends[0].min(ends[1]) <= MOUTH
+            && holds(wider(aisle.along, -PAST * own.width()), place(other, meeting.at))
+    };
+    let mut left: Vec<usize> = (0..strips.len()).filter(|&n| !met[n].is_empty()).filter(may_be).collect();
+    let mut slots = BTreeSet::new();
+    loop {
+        // What meets slots besides what is wide is one as well.
+        let is_slot = |n: usize| {
+            let all = met[n].iter().flat_map(|&m| meetings[m].corridors.iter().map(move |&c| (&meetings[m], c)));
+            let mut others = all.filter(|(_, c)| *c != n && !slots.contains(c));
+            others.all(|(meeting, c)| is_beside(n, meeting, c))
+        };
+        let (more, others): (Vec<usize>, Vec<usize>) = left.into_iter().partition(|&n| is_slot(n));
+        if more.is_empty() {
+            return slots;
+        }
+        slots.extend(more);
+        left = others;
+    }
+}
+
+/// How wide ways are for the greater part of their length, metres.
+fn common_width(strips: &[Strip]) -> f64 {
+    let mut widths: Vec<[f64; 2]> = strips.iter().map(|strip| [strip.width(), strip.length()]).collect();
+    widths.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let half = widths.iter().map(|way| way[1]).sum::<f64>() / 2.0;
+    let mut length = 0.0;
+    let is_past = |[_, own]: &&[f64; 2]| {
+        length += own;
+        length >= half
+    };
+    widths.iter().find(is_past).map_or(0.0, |way| way[0])
 }
