@@ -569,6 +569,17 @@ def test_staggered_gaps_of_any_widths_in_closed_rows_are_ways(gaps: list[list[tu
     assert sorted(junction["type"] for junction in survey.of_kind("junction")) == expected
 
 
+def test_staggered_gaps_of_any_widths_are_ways_though_some_racks_are_empty_alone() -> None:
+    gaps = [[(157, 205)], [(331, 397)], [(75, 131), (400, 460)]]
+    picture = closed_rows(gaps)
+    for row, left in ((0, 300), (1, 120)):  # of one of two racks back to back 3 m
+        low, x = 20 + AISLE + row * (AISLE + DEPTH), 80 + left
+        picture[low : low + DEPTH // 2, x - 2 : x + 62] = OCCUPIED
+        picture[low : low + DEPTH // 2 - 2, x : x + 60] = FREE
+    survey = groundplan.survey(picture, resolution=RESOLUTION)
+    assert sorted(junction["type"] for junction in survey.of_kind("junction")) == ["L"] * 4 + ["T"] * 12
+
+
 @pytest.mark.parametrize("bay", [48, 52, 54])
 def test_staggered_gaps_as_wide_as_a_bay_a_whole_number_of_bays_apart_are_empty_bays(bay: int) -> None:
     gaps = [[(bay * n, bay * (n + 1) - 2) for n in empty] for empty in ((2,), (), (5,), ())]

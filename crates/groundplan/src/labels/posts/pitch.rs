@@ -2,6 +2,7 @@
 //! leaves as future work.
 
 use super::lags::{CONTRAST, COUNTED, Counts, FIRST, LAST, Parts, STEP, all_below, clear, pairs};
+use super::period;
 use crate::bands::{fold, worth};
 use crate::ends::{sorted, wider};
 use crate::gradients::SPECK;
@@ -26,6 +27,12 @@ const ALONG: [f64; 2] = [0.15, 0.025];
 const ABOUT: f64 = 4.0;
 /// A pitch recurs about a row where more than chance are so far apart by as many of its deviations.
 const RECURS: f64 = 2.0;
+/// A pitch is of so many goods at most, which recur so many times as clearly, in pieces of lines of so many pitches, and by more
+/// than so many deviations of what chance makes in as many.
+const MOST_GOODS: usize = 4;
+const CLEARER: f64 = 3.0;
+const PIECE: f64 = 6.0;
+const CHANCE: f64 = 4.0;
 /// Two of one pitch are another to so many steps.
 const HALVES: f64 = 2.0;
 
@@ -38,6 +45,8 @@ pub struct Pitch {
     parts: Parts,
     /// Which lags recur along faces.
     along: Vec<bool>,
+    /// From one of the goods to the next, metres, where the common pitch is some of these.
+    pub goods: Option<f64>,
 }
 
 impl Pitch {
@@ -94,7 +103,34 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<Pitch> {
         |n: usize| (0..2).all(|twice| faces.excess(twice + 1, FIRST + n).0 >= ALONG[twice] * all[n][twice].0);
     let along: Vec<bool> = (0..all.len()).map(is_along).collect();
     let common = counts.pitch(&along)?;
-    Some(Pitch { common, start: view.start, parts, along })
+    Some(Pitch { common, start: view.start, parts, along, goods: goods(&lines, common) })
+}
+
+/// From one of the goods to the next where a pitch is some of these, metres: what recurs at a whole part of it hardly does so at the
+/// whole, as posts would.
+fn goods(lines: &[(f64, Vec<i32>)], pitch: f64) -> Option<f64> {
+    let steps = pitch / STEP;
+    let (mut powers, mut pieces) = ([0.0; MOST_GOODS], 0.0);
+    for (_, places) in lines {
+        // Racks beyond a way have a beginning of their own.
+        for own in places.chunk_by(|one, two| piece(*one, steps) == piece(*two, steps)) {
+            let own: Vec<f64> = own.iter().map(|&place| f64::from(place)).collect();
+            if own.len() >= FEWEST {
+                pieces += 1.0;
+                for (power, number) in powers.iter_mut().zip(1..) {
+                    let strength = period::measure(&own, steps / f64::from(number)).strength;
+                    *power += own.len() as f64 * strength.powi(2) - 1.0;
+                }
+            }
+        }
+    }
+    let (number, best) = powers.into_iter().enumerate().skip(1).max_by(|one, two| one.1.total_cmp(&two.1))?;
+    (best > CHANCE * f64::sqrt(pieces) && best >= CLEARER * powers[0]).then(|| pitch / (number + 1) as f64)
+}
+
+/// Which piece of a line, so many pitches long, a place is of.
+fn piece(place: i32, steps: f64) -> i64 {
+    (f64::from(place) / (PIECE * steps)).floor() as i64
 }
 
 /// How many pairs of specks on a line, of those so far apart, are as many steps apart with a row beside them.
@@ -154,4 +190,24 @@ fn is_face(one: &Speck, other: &Speck) -> bool {
     let columns = (other.column + 1 - one.column) as f64;
     let [left, right] = [0, 1].map(|side| (other.sums[1][side] - one.sums[0][side]) / columns);
     left <= FACE.0 && right >= FACE.1 || right <= FACE.0 && left >= FACE.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Places at so many steps from one to the next, of rows in two pieces.
+    fn line(step: f64) -> (f64, Vec<i32>) {
+        let piece = |from: f64| (0..20).map(move |n| (from + step * f64::from(n)).round() as i32);
+        (0.0, piece(3.0).chain(piece(20.3 * step + 17.0)).collect())
+    }
+
+    #[test]
+    fn a_pitch_at_which_nothing_recurs_but_at_its_half_is_two_goods() {
+        // 2.7 m, 54 steps.
+        assert_eq!(goods(&[line(54.0)], 2.7), None);
+        assert_eq!(goods(&[line(27.0)], 2.7), Some(1.35));
+        assert_eq!(goods(&[line(18.0)], 2.7), Some(2.7 / 3.0));
+        assert_eq!(goods(&[(0.0, vec![3, 30, 57])], 2.7), None);
+    }
 }

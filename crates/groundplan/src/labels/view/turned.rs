@@ -186,6 +186,11 @@ impl Turned {
         }
     }
 
+    /// From one of the goods to the next, metres, where the pitch along its lines is some of these.
+    pub fn goods(&self) -> Option<f64> {
+        self.by_rows.as_ref().and_then(|pitch| pitch.goods)
+    }
+
     /// From post to post along a row, metres: as of the racks on legs in it, and where posts recur in some rows of the view, as
     /// about that one.
     pub fn pitch_of(&self, row: &Row) -> Option<f64> {

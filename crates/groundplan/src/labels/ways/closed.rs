@@ -39,7 +39,7 @@ pub fn is_way(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> boo
     let alike: Vec<f64> = widths.iter().copied().filter(|&other| are_alike(other, width)).collect();
     if part.len() >= ROWS
         && is_count(alike.len(), MANY)
-        && rest(width).is_closed()
+        && rest(width).is_seldom_open()
         && !are_bays(&lengths(width), &alike)
     {
         return true;
@@ -48,7 +48,7 @@ pub fn is_way(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> boo
     let rest = rest(least);
     let through: usize = part.iter().map(|&row| of_row(row).len()).sum();
     // Where as much is open beside something that stands in it, that is an empty bay.
-    if !is_count(all.len(), OF_ALL) || rest.open() != through || !rest.is_closed() {
+    if !is_count(all.len(), OF_ALL) || rest.open() != through || !rest.is_seldom_open() {
         return false;
     }
     // Bays of one row may be longer than those of another.

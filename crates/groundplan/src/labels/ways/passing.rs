@@ -1,6 +1,7 @@
 //! What ways across rows pass through of the rows of a place, and beside which others they end.
 
 use super::across::{crossing, leading_across};
+use super::closed;
 use super::seldom::{self, Rest};
 use crate::ends::{holds, overlap, wider};
 use crate::labels::beside::{Beside, placed};
@@ -16,6 +17,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// What leads through a row of two racks is no narrower than this share of the aisles beside it.
 const NARROWER: f64 = family::LED_TO;
+
+/// What some of the goods leave is as wide as they are but for so much, metres.
+const BETWEEN_GOODS: f64 = 0.2;
+/// Fewer such ways may be bays that are empty by a part.
+const SEVERAL: usize = 3;
 
 /// The aisles along a direction that another one crosses, and the rows between them.
 pub struct Place<'a> {
@@ -59,7 +65,8 @@ impl<'a> Place<'a> {
 
 impl Place<'_> {
     /// True when the rows that something passes through are with those side by side with them open more often than by chance:
-    /// of two racks each, or hardly open elsewhere, or solid where it is as wide as no bay and nothing leads through them all.
+    /// of two racks each, or hardly open elsewhere, or solid where it is as wide as no bay and nothing leads through them all, or no
+    /// number of goods is as wide.
     pub fn is_open_through(&self, strips: &[Strip], own: &Passing, width: f64) -> bool {
         let Some(first) = self.first_of(own) else { return false };
         let part = self.rows_with(first);
@@ -70,10 +77,28 @@ impl Place<'_> {
             let rest = Rest::new(self.views[0], rows(), width);
             rest.is_full() || rest.is_solid() && !may_be_bay()
         };
-        own.is_within && is_full()
+        let is_as_no_goods = || {
+            self.is_no_number_of_goods(own, width)
+                && self.count_within(&part) >= SEVERAL
+                && closed::is_way(self, strips, own, width)
+        };
+        own.is_within && (is_full() || is_as_no_goods())
             || self.are_double(own)
                 && self.is_as_aisles(strips, own, width)
                 && seldom::are_open(self.views[0], rows(), width, is_as_bays)
+    }
+
+    /// True when goods are told along the rows that something passes through, and no number of them leaves such a width.
+    fn is_no_number_of_goods(&self, own: &Passing, width: f64) -> bool {
+        let view = self.views[0];
+        let is_common = || self.pitch_of(own) == view.pitch;
+        view.goods().is_some_and(|goods| is_no_number_of(goods, width) && is_common())
+    }
+
+    /// How many lead through rows of a part of the place, between their ends.
+    fn count_within(&self, part: &BTreeSet<usize>) -> usize {
+        let ways = part.iter().flat_map(|&row| &self.through[row]).filter(|way| self.passing[**way].is_within);
+        ways.collect::<BTreeSet<_>>().len()
     }
 
     /// True when all rows that something passes through may be of two racks.
@@ -179,6 +204,11 @@ impl Passing {
     pub fn holds_more_than(&self, other: &Self) -> bool {
         self.rows.len() > other.rows.len() && other.rows.iter().all(|row| self.rows.contains(row))
     }
+}
+
+/// True when a width is not about a whole number of goods, metres from one to the next.
+fn is_no_number_of(goods: f64, width: f64) -> bool {
+    (width - (width / goods).round() * goods).abs() > BETWEEN_GOODS
 }
 
 /// For each direction, whether some of its strips lead through rows of one of the places between their ends.
@@ -327,5 +357,17 @@ impl<'a> Layout<'a> {
             Passing { rows: own.clone(), racks, rest, next, is_led_on, is_within }
         };
         (crossed.iter().enumerate().map(of_strip).collect(), through)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_some_goods_leave_is_about_as_wide_as_they_are() {
+        for (width, is_none) in [(1.3, false), (1.5, false), (2.0, true), (2.4, true), (2.65, false)] {
+            assert_eq!(is_no_number_of(1.35, width), is_none, "{width}");
+        }
     }
 }

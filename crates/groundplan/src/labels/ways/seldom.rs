@@ -116,17 +116,31 @@ impl<'a> Rest<'a> {
 
     /// True when next to nothing of the rows is open but for those places, and something stands all along their faces.
     pub fn is_closed(&self) -> bool {
-        let stands = || self.rows.iter().map(|row| row.stands(self.view)).sum::<usize>() as f64;
-        self.halves > 0.0 && self.free <= SOLID.1 * self.halves && stands() >= SOLID.0 * self.halves
+        self.halves > 0.0 && self.free <= SOLID.1 * self.halves && self.stands() >= SOLID.0 * self.halves
+    }
+
+    /// True when so little else of the rows' halves is open that as many places would hardly be by chance, and something stands
+    /// all along the faces of what is closed.
+    pub fn is_seldom_open(&self) -> bool {
+        self.halves > 0.0 && self.by_chance() < UNLIKELY && self.stands() >= SOLID.0 * (self.halves - self.free)
+    }
+
+    /// At how many columns of their faces something stands elsewhere.
+    fn stands(&self) -> f64 {
+        self.rows.iter().map(|row| row.stands(self.view)).sum::<usize>() as f64
     }
 
     /// True when each row has as many places, as where a way leads through each, or as nearly as many as chance seldom deals
     /// them, and so little else of their halves is open that as many would hardly be by chance: no shelves are empty there.
     pub fn is_full(&self) -> bool {
+        self.are_as_many() && self.by_chance() < UNLIKELY_IN_FULL
+    }
+
+    /// How likely as many places would be if halves were open there as often as they are elsewhere, whatever the other is.
+    fn by_chance(&self) -> f64 {
         // Half a place more is open and one more is there, as so few tell little.
         let share = (self.free + 0.5 * self.width) / (self.halves + self.width);
-        let by_chance = self.halves / 2.0 / self.width * share * share;
-        self.are_as_many() && likely(self.open(), by_chance) < UNLIKELY_IN_FULL
+        likely(self.open(), self.halves / 2.0 / self.width * share * share)
     }
 
     fn are_as_many(&self) -> bool {
