@@ -627,3 +627,29 @@ def test_a_line_through_the_middle_of_a_way_makes_no_narrower_one_of_it() -> Non
     survey = groundplan.survey(picture, resolution=RESOLUTION)
     widths = sorted(way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C"))
     assert widths == pytest.approx([3.1] * 2 + [4.3] * len(starts), abs=0.15)
+
+
+def stores(aisle: int, way: int, gaps: dict[int, int]) -> Picture:
+    """Four rows of shelves of 13 m by 0.9 m between aisles for people, with a gap where it is given; their insides unseen."""
+    depth, length, end = 18, 260, 28
+    picture = walled(length + 2 * end, 5 * aisle + 4 * depth)
+    left = 20 + end
+    for row in range(4):
+        low = 20 + aisle + row * (aisle + depth)
+        pieces = [(left, left + length)]
+        if row in gaps:
+            pieces = [(left, left + gaps[row]), (left + gaps[row] + way, left + length)]
+        for begin, stop in pieces:
+            picture[low : low + depth, begin:stop] = 0
+            picture[low + 2 : low + depth - 2, begin + 2 : stop - 2] = UNKNOWN
+    return picture
+
+
+@pytest.mark.parametrize("aisle", [18, 22])
+@pytest.mark.parametrize("way", [26, 30])
+def test_between_aisles_for_people_ways_are_as_narrow_as_these(way: int, aisle: int) -> None:
+    # Ways of 1.3 and 1.5 m, where trucks would want 1.6; a gap narrower than the aisles is none.
+    survey = groundplan.survey(stores(aisle, way, {1: 60, 2: 160}), resolution=RESOLUTION)
+    assert len(survey.of_kind("junction")) == 4 + 6 + 4
+    survey = groundplan.survey(stores(aisle, aisle - 4, {1: 60, 2: 160}), resolution=RESOLUTION)
+    assert len(survey.of_kind("junction")) == 4 + 6

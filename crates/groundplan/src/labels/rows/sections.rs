@@ -18,6 +18,13 @@ use std::mem;
 
 /// A way is so wide, metres.
 pub const WIDTH: (f64, f64) = (1.6, 8.0);
+
+/// The least width of what leads through a row, metres: where vehicles would come through, or as the wider of the aisles beside the
+/// row, if only people come through those.
+pub fn least(widest: f64) -> f64 {
+    WIDTH.0.min(widest)
+}
+
 /// A section up to this many pitches is an empty bay, by what is seen of it: posts take a little of each.
 pub const BAY: f64 = 1.03;
 /// Where no bays recur, between ends that are closed what may be a way is narrower by so much, metres.
@@ -62,6 +69,8 @@ pub struct Columns<'a> {
     lines: LinesAcross<'a>,
     /// From post to post, metres, where that is known.
     pitch: Option<f64>,
+    /// What leads through it is so wide, metres.
+    least: f64,
     /// For each column, share of it that is not free.
     blocked: Vec<f64>,
     /// For each column, on which of the two faces something stands.
@@ -80,13 +89,14 @@ pub struct Free {
 }
 
 impl<'a> Columns<'a> {
-    /// The columns of a row; its uprights stand along the `other` direction.
+    /// The columns of a row; its uprights stand along the `other` direction, and what leads through it is so wide at least.
     pub fn new(
         look: &'a Look<'a>,
         frame: &'a Frame,
         [view, other]: [&'a Turned; 2],
         row: &'a Row,
         pitch: Option<f64>,
+        least: f64,
     ) -> Self {
         let turn = other.angle - view.angle;
         let lean = libm::cos(turn) / libm::sin(turn);
@@ -98,6 +108,7 @@ impl<'a> Columns<'a> {
             row,
             lines,
             pitch,
+            least,
             blocked: Vec::with_capacity(count),
             faces: Vec::with_capacity(count),
             stops: Vec::new(),
@@ -421,7 +432,7 @@ impl<'a> Columns<'a> {
     /// True when what lies between two columns is free, and with what lies between cells as wide as a way.
     fn is_free_way(&self, from: usize, to: usize, between_cells: f64) -> bool {
         let width = self.place(to) - self.place(from);
-        (WIDTH.0..=WIDTH.1).contains(&(width + between_cells))
+        (self.least..=WIDTH.1).contains(&(width + between_cells))
             && self.share(from, to) <= CLUTTER
             && !self.is_walled([self.place(from), self.place(to)])
     }

@@ -11,7 +11,7 @@ use crate::labels::corridors::family;
 use crate::labels::corridors::led;
 use crate::labels::corridors::sided;
 use crate::labels::corridors::{self, Strip};
-use crate::labels::rows::sections::{Columns, Free, WIDTH};
+use crate::labels::rows::sections::{self, Columns, Free, WIDTH};
 use crate::labels::rows::{self, Row};
 use crate::labels::view::look::Look;
 use crate::labels::view::turned::Turned;
@@ -201,7 +201,8 @@ fn crossed(
                 return Vec::new();
             }
             let pitch = if view.pitch.is_some() { view.pitch_of(row) } else { common };
-            let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, pitch);
+            let least = sections::least(aisles.map(Strip::width).into_iter().fold(0.0, f64::max));
+            let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, pitch, least);
             let (ways, open) = (columns.ways(), columns.open());
             let cross = |n: usize| {
                 let found = cross([view, other], row, (&columns, &ways, &open), &strips[n], aisles)?;

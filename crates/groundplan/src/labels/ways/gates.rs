@@ -18,7 +18,7 @@ use crate::labels::Evidence;
 use crate::labels::beside::placed;
 use crate::labels::corridors::{self, Strip};
 use crate::labels::rows::Row;
-use crate::labels::rows::sections::Columns;
+use crate::labels::rows::sections::{self, Columns};
 use crate::labels::rows::seen::Seen;
 use crate::labels::view::look::Look;
 use crate::labels::view::turned::Turned;
@@ -198,7 +198,8 @@ fn seen<'a>(
         let view = &views[row.direction];
         let middles = between.map(|n| strips[n].middle());
         let widest = between.map(|n| strips[n].width()).into_iter().fold(0.0, f64::max);
-        let columns = Columns::new(look, &evidence.grid.frame, [view, other], reaching, view.pitch_of(row));
+        let least = sections::least(widest);
+        let columns = Columns::new(look, &evidence.grid.frame, [view, other], reaching, view.pitch_of(row), least);
         let ways = columns.ways();
         Some(Seen { own: row.along, row: reaching, columns, ways, views: [view, other], between, middles, widest })
     })

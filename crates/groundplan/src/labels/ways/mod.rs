@@ -27,7 +27,7 @@ use super::Evidence;
 use super::beside::{Beside, placed};
 use super::corridors::Strip;
 use super::posts::lags::LONGEST;
-use super::rows::sections::{BAY, WIDTH, is_as_bays};
+use super::rows::sections::{BAY, is_as_bays};
 use super::rows::{DEPTH, SHORTEST};
 use super::view::look::Look;
 use super::view::turned::Turned;
@@ -74,7 +74,7 @@ pub fn among(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
         let context = Context::new(evidence, look, &place, strips, &placed);
         for (n, own) in place.passing.iter().enumerate().filter(|(_, own)| !own.rows.is_empty() && own.rest <= REST) {
             let asked = Asked::new(&context, n);
-            let is_narrow = n >= first && asked.width < WIDTH.0 && !own.is_whole();
+            let is_narrow = n >= first && asked.width < asked.least() && !own.is_whole();
             stays[n] &= asked.is_way() && (!is_narrow || asked.is_closed()) && !context.bars.are_parted(n);
             if let Some(cut) = stays[n].then(|| context.bars.cut(n)).flatten() {
                 pieces[n] = cut;
@@ -191,6 +191,11 @@ impl<'a> Asked<'a> {
             is_without_bays: OnceCell::new(),
             is_closed: OnceCell::new(),
         }
+    }
+
+    /// The least width of what leads through its rows, metres.
+    fn least(&self) -> f64 {
+        self.context.place.least(self.context.strips, self.own)
     }
 
     /// True when it need not be asked, or its width and where it lies tell that it is a way; bars tell where these disagree or
@@ -337,7 +342,7 @@ impl<'a> Asked<'a> {
         let goes_past = |&row: &usize| self.context.place.goes_past(row, self.strip, FARTHER);
         let is_barred = || bars.end_rows_before(self.n) && self.own.next.iter().all(goes_past);
         let is_narrower_than_bays =
-            || self.width >= WIDTH.0 && self.pitch().is_some_and(|pitch| self.width <= PART_OF_BAY * pitch);
+            || self.width >= self.least() && self.pitch().is_some_and(|pitch| self.width <= PART_OF_BAY * pitch);
         let is_along_turned_wall = || {
             self.own.rows.len() >= IN_LINE
                 && is_narrower_than_bays()
@@ -375,7 +380,7 @@ impl<'a> Asked<'a> {
         let is_open_nowhere_else =
             || self.own.racks >= IN_LINE && !empties::are_about(place, strips, self.own, self.width);
         let is_seldom = || self.expected().is_some_and(|expected| expected < SELDOM) || is_open_nowhere_else();
-        self.own.is_within && self.own.racks > 1 && self.width >= WIDTH.0 && is_seldom()
+        self.own.is_within && self.own.racks > 1 && self.width >= self.least() && is_seldom()
     }
 
     /// True when no bays recur along its rows, and each row has as many as wide, or it lies as none can: it is no gap between

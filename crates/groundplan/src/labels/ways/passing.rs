@@ -7,7 +7,7 @@ use crate::ends::{holds, overlap, wider};
 use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::family;
 use crate::labels::corridors::{self, Strip};
-use crate::labels::rows::sections::is_as_bays;
+use crate::labels::rows::sections::{self, is_as_bays};
 use crate::labels::rows::shelves::Shelves;
 use crate::labels::rows::whole;
 use crate::labels::rows::{self, Row};
@@ -104,6 +104,12 @@ impl Place<'_> {
     /// True when all rows that something passes through may be of two racks.
     pub fn are_double(&self, own: &Passing) -> bool {
         own.rows.iter().all(|&row| seldom::is_double(&self.rows[row].0))
+    }
+
+    /// The least width of what leads through the rows that something passes through, metres.
+    pub fn least(&self, strips: &[Strip], own: &Passing) -> f64 {
+        let aisles = own.rows.iter().flat_map(|&row| self.rows[row].1);
+        sections::least(aisles.map(|aisle| strips[self.aisles[aisle]].width()).fold(0.0, f64::max))
     }
 
     /// True when a width is not much less than that of the aisles beside the rows that something passes through.

@@ -271,7 +271,8 @@ impl<'a> Through<'a> {
         for &next in &self.above[last] {
             for open in self.open.of(next) {
                 let both = shared(ends, *open);
-                if both[1] - both[0] + BETWEEN_CELLS >= WIDTH.0 {
+                let least = self.rows[last].least().max(self.rows[next].least());
+                if both[1] - both[0] + BETWEEN_CELLS >= least {
                     rows.push(next);
                     self.follow(rows, both, found);
                     rows.pop();
