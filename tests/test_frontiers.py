@@ -150,3 +150,26 @@ def behind_corners(rows: int, near: int, slope: float) -> Picture:
 @pytest.mark.parametrize(("near", "slope"), [(10, 0.4), (12, 0.7), (12, 0.9)])
 def test_an_aisle_opens_though_behind_the_corners_of_a_row_less_was_seen(near: int, slope: float, rows: int) -> None:
     assert types(behind_corners(rows, near, slope)) == ["L"] * 4 + ["T"] * 2 * (rows - 1)
+
+
+def across_from_bays(bay: int) -> Picture:
+    """A way with a rack of such bays along its outer side; of the aisles between rows on the other side 3 m were seen, of one all."""
+    rows, wall, seen = 8, 24, 60
+    height = rows * DEPTH + (rows + 1) * AISLE
+    picture = walled(wall + 2 * CROSS + LENGTH, height)
+    for n, y in enumerate(range(20, 20 + height - bay, bay)):
+        picture[y : y + 2, 20 : 20 + wall] = 0
+        if n % 3 != 1:
+            picture[y + 4 : y + bay - 4, 21 : 20 + wall - 1] = 0
+    left = 20 + wall + CROSS
+    for low in (20 + AISLE + row * (AISLE + DEPTH) for row in range(rows)):
+        picture[low : low + DEPTH, left : left + LENGTH] = 0
+        picture[low + 3 : low + DEPTH - 3, left + 3 : left + LENGTH - 3] = UNKNOWN
+    picture[20 + AISLE + DEPTH :, left + seen :] = UNKNOWN
+    return picture
+
+
+@pytest.mark.parametrize("turns", range(2))
+@pytest.mark.parametrize("bay", [62, 66, 70])
+def test_aisles_open_into_a_way_along_the_other_side_of_which_bays_are_as_wide(bay: int, turns: int) -> None:
+    assert types(across_from_bays(bay), turns).count("T") == 7

@@ -3,7 +3,7 @@
 
 use super::barriers;
 use super::known::{Known, Led};
-use super::openings::{self, Opening};
+use super::openings::{self, Bays, Opening};
 use super::stretches;
 use crate::ends::{around, holds, sorted, wider};
 use crate::labels::beside::{Beside, placed};
@@ -45,7 +45,7 @@ pub fn with(
     if views.len() < 3 {
         return None;
     }
-    let pitches = openings::pitches(views, rows);
+    let bays = Bays::new(views, rows);
     let mut known = Known::new(views, strips);
     let placed = placed(views, strips.iter().map(Strip::place));
     let widest = corridors::widest(strips);
@@ -79,7 +79,7 @@ pub fn with(
             })
         };
         let is_leg = |opening: &Opening| opening.held.iter().all(|held| *held >= LENGTH[0]) && is_new(&opening.way);
-        for Opening { way, middle, .. } in openings::of(views, strip, &pitches, parameters).into_iter().filter(is_leg) {
+        for Opening { way, middle, .. } in openings::of(views, strip, &bays, parameters).into_iter().filter(is_leg) {
             let side = usize::from(middle < way.along[0]);
             if let Some(led) = bend(&way, side) {
                 known.add(led);

@@ -5,7 +5,7 @@
 
 use super::along_walls;
 use super::before_walls;
-use super::openings::{self, Opening};
+use super::openings::{self, Bays, Opening};
 use super::ragged;
 use crate::ends::{around, both, holds, shared, sorted, wider};
 use crate::labels::beside::{Beside, placed};
@@ -31,8 +31,8 @@ pub const IN_LINE: f64 = 0.5;
 /// The ways with those that end at frontiers or lead before walls and are as wide as others, and with what they lead on along walls;
 /// none where there is no such.
 pub fn with(views: &[Turned], strips: &[Strip], rows: &[Row], parameters: &Parameters) -> Option<Vec<Strip>> {
-    let pitches = openings::pitches(views, rows);
-    let openings = |passing: &Strip| openings::of(views, passing, &pitches, parameters);
+    let bays = Bays::new(views, rows);
+    let openings = |passing: &Strip| openings::of(views, passing, &bays, parameters);
     let mut known =
         Known { views, strips, rows, ways: strips.to_vec(), placed: placed(views, strips.iter().map(Strip::place)) };
     for strip in strips {

@@ -2,7 +2,8 @@
 
 use super::stretches;
 use crate::bits::{Bits, WORD, lowest};
-use crate::ends::{sorted, wider};
+use crate::ends::{overlap, sorted, wider};
+use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::Strip;
 use crate::labels::junctions::shut;
 use crate::labels::rows::sections::{BAY, WIDTH};
@@ -51,19 +52,39 @@ pub struct Opening {
     pub goes_on: bool,
 }
 
-/// From post to post along each direction, metres, where rows run along it: other than these nothing has bays.
-pub fn pitches(views: &[Turned], rows: &[Row]) -> Vec<Option<f64>> {
-    let longest =
-        |view: &Turned| rows.iter().filter(|row| row.direction == view.direction).map(Row::length).fold(0.0, f64::max);
-    views.iter().map(|view| view.pitch.filter(|pitch| longest(view) >= BAYS * pitch)).collect()
+/// The rows that have bays, by where they lie: nothing else has.
+pub struct Bays<'a> {
+    views: &'a [Turned],
+    rows: Vec<&'a Row>,
+    placed: Vec<Beside>,
 }
 
-/// What opens into a way from one side or the other, square to it, where these are the pitches of all directions. Of what may be one
-/// opening the parts come before the whole, of which the middle was not seen, and both before what is wider by what corners hid.
-pub fn of(views: &[Turned], way: &Strip, pitches: &[Option<f64>], parameters: &Parameters) -> Vec<Opening> {
-    let (view, pitch) = (&views[way.direction], pitches[way.direction]);
+impl<'a> Bays<'a> {
+    /// Of some rows.
+    pub fn new(views: &'a [Turned], rows: &'a [Row]) -> Self {
+        let is_of_bays = |row: &&Row| views[row.direction].pitch.is_some_and(|pitch| row.length() >= BAYS * pitch);
+        let rows: Vec<&Row> = rows.iter().filter(is_of_bays).collect();
+        let placed = placed(views, rows.iter().map(|row| row.place()));
+        Self { views, rows, placed }
+    }
+
+    /// From where to where along they are beside a side of a way, and how far it is from post to post, metres.
+    fn beside(&self, way: &Strip, side: usize) -> Option<(Vec<[f64; 2]>, f64)> {
+        let at = way.across[side];
+        let near = self.placed[way.direction].touching(way.along, wider([at; 2], END)).into_iter();
+        let is_beside = |row: &&Row| (row.across[1 - side] - at).abs() <= END;
+        let along: Vec<[f64; 2]> = near.map(|n| self.rows[n]).filter(is_beside).map(|row| row.along).collect();
+        self.views[way.direction].pitch.filter(|_| !along.is_empty()).map(|pitch| (along, pitch))
+    }
+}
+
+/// What opens into a way from one side or the other, square to it, and is no bay. Of what may be one opening the parts come before
+/// the whole, of which the middle was not seen, and both before what is wider by what corners hid.
+pub fn of(views: &[Turned], way: &Strip, bays: &Bays, parameters: &Parameters) -> Vec<Opening> {
+    let view = &views[way.direction];
     let Some(other) = square_to(views, way.direction) else { return Vec::new() };
-    [0, 1].into_iter().flat_map(|side| Passing { view, other, way, side, pitch, parameters }.openings()).collect()
+    let passing = |side| Passing { view, other, way, side, bays: bays.beside(way, side), parameters };
+    [0, 1].into_iter().flat_map(|side| passing(side).openings()).collect()
 }
 
 /// A way past the ends of rows on one of its sides.
@@ -72,8 +93,8 @@ struct Passing<'a> {
     other: &'a Turned,
     way: &'a Strip,
     side: usize,
-    /// From post to post along it, metres, where there are such.
-    pitch: Option<f64>,
+    /// From where to where along it rows with bays are, and how far it is from post to post, metres, where there are such.
+    bays: Option<(Vec<[f64; 2]>, f64)>,
     parameters: &'a Parameters,
 }
 
@@ -98,7 +119,8 @@ impl Passing<'_> {
                 open.push(wider);
             }
         }
-        let opens = |&(from, to): &Run| self.is_wide_as_way(to - from) && self.has_corners(&columns, &depths, from..to);
+        let is_way = |from: usize, to: usize| self.is_as_a_way([from, to].map(|n| self.view.along(columns.start + n)));
+        let opens = |&(from, to): &Run| is_way(from, to) && self.has_corners(&columns, &depths, from..to);
         let open = open.into_iter().filter(opens);
         open.filter_map(|(from, to)| self.opening(&columns, &depths, from..to)).collect()
     }
@@ -172,11 +194,15 @@ impl Passing<'_> {
         depths
     }
 
-    /// So many columns are as wide as a way, and wider than a bay of a row along the way past them.
-    fn is_wide_as_way(&self, columns: usize) -> bool {
-        let width = self.metres(columns);
+    /// True when what opens between two places is as wide as a way, and wider than a bay where it would be one of a row beside the
+    /// way past it.
+    fn is_as_a_way(&self, along: [f64; 2]) -> bool {
+        let width = along[1] - along[0];
+        let is_wider = |(rows, pitch): &(Vec<[f64; 2]>, f64)| {
+            width > BAY * pitch || !rows.iter().any(|row| overlap(*row, along) > 0.0)
+        };
         (self.parameters.labels_min_width.max(WIDTH.0)..=self.parameters.labels_max_width).contains(&width)
-            && self.pitch.is_none_or(|pitch| width > BAY * pitch)
+            && self.bays.as_ref().is_none_or(is_wider)
     }
 
     /// True when at either side of some columns, of which the way's are given, a row ends, be its first bay empty, or the way
