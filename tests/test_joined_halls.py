@@ -229,3 +229,34 @@ def test_an_aisle_leads_into_a_wing_up_to_its_first_aisle_and_not_on_through_its
     along = [way["axis"] for way in survey.of_kind("corridor") if abs(np.subtract(*way["axis"])[1]) < 1]
     assert len(along) == 4
     assert max(end[0] for axis in along for end in axis) < 46
+
+
+@pytest.mark.parametrize("turn", [8.0, 10.0, 12.0, 14.0])
+def test_a_passage_leads_up_to_the_first_way_of_a_wing_and_not_on_through_an_aisle_that_runs_nearly_so(turn: float) -> None:
+    canvas = Canvas(1500, 1060)
+    first, aisle, depth, passage = 3.2, 4.6, 2.0, 2.4
+    height = 4 * aisle + 3 * depth
+    low = -height / 2 - 1.5
+
+    def box(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
+        canvas.box(20 * (x + 4), 20 * (y + 12), 20 * (right + 4), 20 * (top + 12), value)
+
+    def wing(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
+        cos, sin = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+        u, v = x, (y + top) / 2
+        start = (20 * (34 + cos * u + sin * v), 20 * (20 + cos * v - sin * u))
+        canvas.bar(start, -turn, 20 * (right - x), 20 * (top - y), value)
+
+    box(-0.15, -0.15, 24.15, 19.15)
+    box(23.7, 8 - passage / 2 - 0.15, 33, 8 + passage / 2 + 0.15)
+    wing(-0.15, low - 0.15, 30.15, low + height + 0.15)
+    box(0, 0, 24, 19, FREE)
+    wing(0, low, 30, low + height, FREE)
+    box(23.7, 8 - passage / 2, 30.8, 8 + passage / 2, FREE)
+    for n in range(3):
+        box(4, 3.5 + 5 * n, 20, 5.5 + 5 * n)
+        wing(first, low + aisle + (aisle + depth) * n, 26.5, low + (aisle + depth) * (n + 1))
+    survey = groundplan.survey(canvas.picture, resolution=RESOLUTION)
+    along = [way["axis"] for way in survey.of_kind("corridor") if abs(np.subtract(*way["axis"])[1]) < 1]
+    assert len(along) == 4
+    assert max(end[0] for axis in along for end in axis) < 36

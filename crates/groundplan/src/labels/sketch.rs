@@ -255,6 +255,10 @@ impl Plan {
             (plan, across) = Self::new(views, faced, threads).with_others(evidence, look, views);
             plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }
+        if let Some(shorter) = askew::up_to_first(views, &plan.strips) {
+            plan = Self::new(views, shorter, threads);
+            plan.racks = plan.find_racks(views, on_legs, &standing, threads);
+        }
         let slots = slots::by_meetings(views, &plan.strips, &plan.meetings, &plan.racks);
         if !slots.is_empty() {
             let rest = (0..plan.strips.len()).filter(|n| !slots.contains(n)).map(|n| plan.strips[n].clone());
