@@ -153,7 +153,7 @@ def test_an_aisle_opens_though_behind_the_corners_of_a_row_less_was_seen(near: i
 
 
 def across_from_bays(bay: int) -> Picture:
-    """A way with a rack of such bays along its outer side; of the aisles between rows on the other side 3 m were seen, of one all."""
+    """A way with a rack of such bays along one side; of the aisles on its other side 3 m were seen, one whole."""
     rows, wall, seen = 8, 24, 60
     height = rows * DEPTH + (rows + 1) * AISLE
     picture = walled(wall + 2 * CROSS + LENGTH, height)

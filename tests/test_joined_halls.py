@@ -232,7 +232,9 @@ def test_an_aisle_leads_into_a_wing_up_to_its_first_aisle_and_not_on_through_its
 
 
 @pytest.mark.parametrize("turn", [8.0, 10.0, 12.0, 14.0])
-def test_a_passage_leads_up_to_the_first_way_of_a_wing_and_not_on_through_an_aisle_that_runs_nearly_so(turn: float) -> None:
+def test_a_passage_leads_up_to_the_first_way_of_a_wing_and_not_on_through_an_aisle_that_runs_nearly_so(
+    turn: float,
+) -> None:
     canvas = Canvas(1500, 1060)
     first, aisle, depth, passage = 3.2, 4.6, 2.0, 2.4
     height = 4 * aisle + 3 * depth

@@ -630,7 +630,7 @@ def test_a_line_through_the_middle_of_a_way_makes_no_narrower_one_of_it() -> Non
 
 
 def stores(aisle: int, way: int, gaps: dict[int, int]) -> Picture:
-    """Four rows of shelves of 13 m by 0.9 m between aisles for people, with a gap where it is given; their insides unseen."""
+    """Four rows of shelves of 13 m by 0.9 m between aisles for people, with gaps where these are given."""
     depth, length, end = 18, 260, 28
     picture = walled(length + 2 * end, 5 * aisle + 4 * depth)
     left = 20 + end
