@@ -395,3 +395,61 @@ def along_a_turned_wall(seed: int, lean: float) -> Picture:
 def test_aisles_meet_the_way_along_a_wall_that_drift_has_turned(lean: float, seed: int) -> None:
     survey = groundplan.survey(along_a_turned_wall(seed, lean), resolution=0.05)
     assert [junction for junction in survey.of_kind("junction") if junction["type"] == "end"] == []
+
+
+def up_to_a_row(ends: tuple[int, int, int, int], length: int) -> Picture:
+    """Four rows of niches that end so much before the east wall; one goes on to it."""
+    aisle, depth = 26, 20
+    picture = walled(length + 40, 5 * aisle + 4 * depth)
+    draws = np.random.default_rng(1)
+    for row, off in enumerate(ends):
+        low, right = 20 + aisle + row * (aisle + depth), 20 + length + 40 - off
+        picture[low : low + depth, 20:right] = 0
+        picture[low + 3 : low + depth - 3, 20 : right - 3] = UNKNOWN
+        for x in range(24, right - 20, 18):
+            niche = draws.integers(4)
+            if niche < 2:
+                top = low + niche * (depth // 2 + 2)
+                picture[top : top + depth // 2 - 2, x : x + 15] = 254
+    return picture
+
+
+@pytest.mark.parametrize("length", [120, 200, 260])
+@pytest.mark.parametrize("ends", [(44, 40, 0, 44), (40, 45, 0, 45)])
+def test_a_way_leads_past_two_rows_that_end_nearly_in_line_though_the_next_goes_on_to_the_wall(
+    ends: tuple[int, int, int, int], length: int
+) -> None:
+    survey = groundplan.survey(up_to_a_row(ends, length), resolution=0.05)
+    kinds = [junction["type"] for junction in survey.of_kind("junction") if junction["at"][0] > length * 0.05]
+    assert kinds.count("L") == 2 and kinds.count("T") == 1
+
+
+def short_of_the_wall(gap: int) -> groundplan.Survey:
+    """Two rows of two racks, with frames from bay to bay; one row ends so much before the west wall."""
+    bay, way, aisle, depth = 54, 76, 66, 46
+    left = 20 + gap + 2 * bay
+    picture = walled(left - 20 + way + 5 * bay + 70, 3 * aisle + 2 * depth)
+
+    def rack(low: int, first: int, bays: int) -> None:
+        for n in range(bays + 1):
+            picture[low : low + depth, first + n * bay - 1 : first + n * bay + 2] = 0
+        for n in range(bays):
+            if n in (0, 1, 3):
+                picture[low + 3 : low + depth - 3, first + n * bay + 5 : first + (n + 1) * bay - 4] = 0
+            picture[low + depth // 2 - 1 : low + depth // 2 + 1, first + n * bay : first + (n + 1) * bay] = 0
+
+    rack(20 + aisle, 20 + gap, 2)
+    bays = (left - 20) // bay
+    rack(20 + 2 * aisle + depth, left - bays * bay, bays)
+    for low in (20 + aisle, 20 + 2 * aisle + depth):
+        rack(low, left + way, 5)
+    return groundplan.survey(picture, resolution=0.05)
+
+
+@pytest.mark.parametrize(("gap", "corners"), [(54, 2), (60, 2), (72, 4), (78, 4), (84, 4)])
+def test_past_the_end_of_one_row_a_way_as_wide_as_others_is_none_if_it_may_be_a_bay_that_is_empty(
+    gap: int, corners: int
+) -> None:
+    # From post to post it is 2.7 m, and others are 3.8 m wide; past the end there are 1 to 1.6 bays.
+    kinds = [junction["type"] for junction in short_of_the_wall(gap).of_kind("junction")]
+    assert kinds.count("L") == corners

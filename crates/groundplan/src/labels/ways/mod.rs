@@ -51,6 +51,8 @@ const SELDOM: f64 = 0.06;
 const AT_WALL: f64 = 0.001;
 /// What of a bay a frame in the wall behind it would hide, metres.
 const HIDDEN: f64 = 0.15;
+/// What leads past a row's end before a wall is so far from any number of bays, as a share of one: rows may keep clear of walls.
+const OFF_BAYS: f64 = 0.25;
 /// What is as wide as a bay is an empty one where more would be.
 const ANYWHERE: f64 = 0.4;
 /// The same of what leads through one row alone: what else is as wide there may be ways.
@@ -208,7 +210,7 @@ impl<'a> Asked<'a> {
         match (self.is_as_ways_are(), self.lies_as_bays()) {
             (true, false) => !bars.are_missed(self.n),
             (false, true) => false,
-            (true, true) => bars.are_beside(self.n),
+            (true, true) => bars.are_beside(self.n) || self.is_past_end_before_wall(),
             (false, false) => {
                 self.is_between_bars_of_two_racks() || !self.is_told_within() && bars.are_beside_all(self.n)
             }
@@ -250,19 +252,33 @@ impl<'a> Asked<'a> {
         self.is_as_wide() || self.is_no_bay() || self.is_without_bays()
     }
 
+    /// True when a wall runs along it, past a single row.
+    fn is_before_wall(&self) -> bool {
+        self.own.rows.len() == 1
+            && !self.own.is_led_on
+            && walled::sides(self.context.place.views[1], self.strip).contains(&true)
+    }
+
+    /// True when it leads past a row's end before a wall, where a bar stands, and is as wide as no number of bays, even if the row kept
+    /// clear of the wall.
+    fn is_past_end_before_wall(&self) -> bool {
+        let is_no_number = |pitch: f64| {
+            let bays = self.width / pitch;
+            bays > 1.0 && (bays - bays.round()).abs() >= OFF_BAYS
+        };
+        self.is_before_wall()
+            && self.pitch().is_some_and(is_no_number)
+            && self.context.bars.are_before_bars(self.n, 0.0)
+    }
+
     /// True when it lies where an empty bay would: before a wall to which the rows beside it go on, or as bays of single rows lie.
     fn lies_as_bays(&self) -> bool {
-        let is_before_wall = || {
-            self.own.rows.len() == 1
-                && !self.own.is_led_on
-                && walled::sides(self.context.place.views[1], self.strip).contains(&true)
-        };
         let may_lie = || self.pitch().is_none() || self.may_be_bay();
         let is_as_bays_lie = || {
             may_lie()
                 && self.context.alone().is_as_bays_lie(self.context.place, self.context.strips, self.own, self.width)
         };
-        is_before_wall() || is_as_bays_lie() && !self.is_without_bays()
+        self.is_before_wall() || is_as_bays_lie() && !self.is_without_bays()
     }
 
     /// True when all its rows are of two racks, and bars stand beside it: what fills a rack's depth is as a bar, but of two racks

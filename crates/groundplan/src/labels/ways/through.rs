@@ -53,6 +53,11 @@ const SOME: f64 = 0.0005;
 const ENDS: usize = 4;
 const GUARDED: f64 = 0.75;
 const NEVER: f64 = 0.0001;
+/// So many rows in line, but for so much, metres, end before a wall that others reach, and are open elsewhere for less than this share
+/// of what leads past them.
+const SEVERAL: usize = 2;
+const NEARLY: f64 = 0.5;
+const FULL: f64 = 0.5;
 
 /// The rows of a place, and where each is open.
 pub struct Through<'a> {
@@ -190,20 +195,38 @@ impl<'a> Through<'a> {
             for (n, at_wall) in ways.iter().enumerate() {
                 let Some((way, _, is_as_a_bay)) = at_wall else { continue };
                 let beside = self.beside(n, way.middle());
-                let is_in_line = |m: &usize| {
-                    let is_so = |end: usize, other: &Strip| (other.across[end] - way.across[end]).abs() <= SLACK;
-                    ways[*m].as_ref().is_some_and(|(other, ..)| is_so(0, other) && is_so(1, other))
+                let are_near = |m: usize, within: f64| {
+                    let is_so = |end: usize, other: &Strip| (other.across[end] - way.across[end]).abs() <= within;
+                    ways[m].as_ref().is_some_and(|(other, ..)| is_so(0, other) && is_so(1, other))
                 };
+                let is_in_line = |m: &usize| are_near(*m, SLACK);
                 let is_bounded = |m: &usize| ways[*m].as_ref().is_some_and(|(_, is_bounded, _)| *is_bounded);
                 if beside.iter().all(is_in_line)
                     && beside.iter().any(is_bounded)
                     && self.are_all(&beside, way, strips, placed)
+                    || !is_as_a_bay && self.are_several_full(n, way, |m| are_near(*m, NEARLY))
                 {
                     found.push((way.clone(), *is_as_a_bay));
                 }
             }
         }
         found
+    }
+
+    /// True when a row ends before a wall in line with others beside it, and none of these is open elsewhere for as long: where some go
+    /// on to the wall, one alone might have an empty bay there.
+    fn are_several_full(&self, row: usize, way: &Strip, is_near: impl Fn(&usize) -> bool) -> bool {
+        let (mut found, mut next) = (BTreeSet::from([row]), vec![row]);
+        while let Some(n) = next.pop() {
+            let beside = self.above[n].iter().chain(&self.below[n]).copied();
+            next.extend(beside.filter(|m| !self.walls[*m] && is_near(m) && found.insert(*m)));
+        }
+        let is_full = |&n: &usize| {
+            let own = self.rows[n].stretch(way.across);
+            let open = self.open.of(n).iter().map(|&open| self.rows[n].stretch(open));
+            open.filter(|open| overlap(*open, own) <= 0.0).all(|open| open[1] - open[0] < FULL * way.width())
+        };
+        found.len() >= SEVERAL && found.iter().all(is_full)
     }
 
     /// What lies between the racks of rows, from aisle to aisle, how far from post to post, and whether no other row is
