@@ -424,8 +424,8 @@ def test_a_way_leads_past_two_rows_that_end_nearly_in_line_though_the_next_goes_
     assert kinds.count("L") == 2 and kinds.count("T") == 1
 
 
-def short_of_the_wall(gap: int) -> groundplan.Survey:
-    """Two rows of two racks, with frames from bay to bay; one row ends so much before the west wall."""
+def short_of_the_wall(gap: int, clear: int = 0) -> groundplan.Survey:
+    """Two rows of two racks with frames; one ends so much before the west wall, the other keeps so clear of it."""
     bay, way, aisle, depth = 54, 76, 66, 46
     left = 20 + gap + 2 * bay
     picture = walled(left - 20 + way + 5 * bay + 70, 3 * aisle + 2 * depth)
@@ -439,8 +439,7 @@ def short_of_the_wall(gap: int) -> groundplan.Survey:
             picture[low + depth // 2 - 1 : low + depth // 2 + 1, first + n * bay : first + (n + 1) * bay] = 0
 
     rack(20 + aisle, 20 + gap, 2)
-    bays = (left - 20) // bay
-    rack(20 + 2 * aisle + depth, left - bays * bay, bays)
+    rack(20 + 2 * aisle + depth, 21 + clear, (left - 20 - clear) // bay)
     for low in (20 + aisle, 20 + 2 * aisle + depth):
         rack(low, left + way, 5)
     return groundplan.survey(picture, resolution=0.05)
@@ -453,3 +452,8 @@ def test_past_the_end_of_one_row_a_way_as_wide_as_others_is_none_if_it_may_be_a_
     # From post to post it is 2.7 m, and others are 3.8 m wide; past the end there are 1 to 1.6 bays.
     kinds = [junction["type"] for junction in short_of_the_wall(gap).of_kind("junction")]
     assert kinds.count("L") == corners
+
+
+def test_past_the_end_of_one_row_an_empty_bay_is_none_though_the_rows_keep_clear_of_the_wall() -> None:
+    kinds = [junction["type"] for junction in short_of_the_wall(54 + 18, clear=18).of_kind("junction")]
+    assert kinds.count("L") == 2

@@ -262,3 +262,16 @@ def test_a_passage_leads_up_to_the_first_way_of_a_wing_and_not_on_through_an_ais
     along = [way["axis"] for way in survey.of_kind("corridor") if abs(np.subtract(*way["axis"])[1]) < 1]
     assert len(along) == 4
     assert max(end[0] for axis in along for end in axis) < 36
+
+
+@pytest.mark.parametrize("turn", [8.0, 12.0, 16.0])
+def test_a_corridor_between_walls_of_its_own_forks_off_another_though_a_third_crosses_both(turn: float) -> None:
+    canvas, width = Canvas(1200, 900), 60
+    for margin, value in ((3, OCCUPIED), (0, FREE)):
+        for start, degrees, length in (((60, 300), 0.0, 1080), ((300, 300), turn, 700), ((700, 100), 90.0, 750)):
+            cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+            first = (start[0] - margin * cos, start[1] - margin * sin)
+            canvas.bar(first, degrees, length + 2 * margin, width + 2 * margin, value)
+    survey = groundplan.survey(canvas.picture, resolution=RESOLUTION)
+    askew = [way["axis"] for way in survey.of_kind("corridor") if 2 < abs(np.subtract(*way["axis"])[1]) < 20]
+    assert max(np.hypot(*np.subtract(*axis)) for axis in askew) > 30

@@ -10,6 +10,7 @@ use super::corridors::frontiers;
 use super::corridors::heads;
 use super::corridors::joined;
 use super::corridors::led;
+use super::corridors::led_into;
 use super::corridors::past_goods;
 use super::corridors::past_last;
 use super::corridors::pillared;
@@ -255,7 +256,7 @@ impl Plan {
             (plan, across) = Self::new(views, faced, threads).with_others(evidence, look, views);
             plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }
-        if let Some(shorter) = askew::up_to_first(views, &plan.strips) {
+        if let Some(shorter) = led_into::cut(views, &plan.strips) {
             plan = Self::new(views, shorter, threads);
             plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }

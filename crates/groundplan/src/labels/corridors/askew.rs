@@ -1,18 +1,15 @@
 //! Ways that seem to lead on through a hall whose rows run askew to them: from one of its aisles to the next between racks that
-//! reach into the way from both sides, with nothing along it, or past the first way that crosses them into such an aisle.
+//! reach into the way from both sides, with nothing along it.
 
 use super::sided;
 use crate::ends::{holds, sorted, wider};
 use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::Strip;
 use crate::labels::corridors::pieces::BESIDE;
-use crate::labels::junctions::shut::sign;
 use crate::labels::view::turned::Turned;
 
 /// Aisles that a way crosses at an angle of such a sine run neither along it nor square to it.
 const ASKEW: [f64; 2] = [0.2, 0.97];
-/// An aisle into which a way only seems to lead on is askew to it by such a sine; the ways that cross both, by more.
-const NEARLY: [f64; 2] = [0.1, 0.5];
 /// Somewhere between two of them so much of its width is taken, but for its very sides.
 const TAKEN: f64 = 0.02;
 /// The shares of it along which the ground ends at its one side and at the other are less than this together.
@@ -22,66 +19,6 @@ const ENDS: f64 = 0.8;
 /// Of a way that is cut there what has nothing along both its sides is dropped when it is shorter than this share of the longest
 /// piece.
 const LEAST: f64 = 0.5;
-
-/// The strips without what leads on past others, between no sides, into ways that run nearly the same way; none where nothing does.
-pub fn up_to_first(views: &[Turned], strips: &[Strip]) -> Option<Vec<Strip>> {
-    let are_nearly = |one: &Turned, two: &Turned| holds(NEARLY, one.sine(two));
-    if !views.iter().any(|one| views.iter().any(|two| are_nearly(one, two))) {
-        return None;
-    }
-    let placed = placed(views, strips.iter().map(Strip::place));
-    let cut = |strip: &Strip| {
-        let own = &views[strip.direction];
-        let mut left = strip.clone();
-        for side in [0, 1] {
-            let end = own.to_map([strip.along[side], strip.middle()]);
-            let ends_in = |its: &&Turned| {
-                let [u, v] = its.place(end);
-                let near = placed[its.direction].touching([u; 2], [v; 2]).into_iter().map(|n| &strips[n]);
-                near.filter(|other| holds(other.along, u) && holds(other.across, v)).map(Strip::length).reduce(f64::max)
-            };
-            let nearly = views.iter().filter(|its| are_nearly(own, its));
-            let found = nearly.filter_map(|its| {
-                Some((ends_in(&its)?, last_crossing(views, [own, its], strip, side, strips, &placed)?))
-            });
-            for (longer, [middle, beyond]) in found {
-                let along = sorted([beyond, strip.along[side]]);
-                let piece = Strip { along, ..strip.clone() };
-                let is_past = (strip.along[side] - beyond) * sign(side) > strip.width();
-                if is_past && piece.length() < longer && !sided::is_sided(own, &piece) {
-                    (left.along[side], left.stops[side]) = (middle, true);
-                }
-            }
-        }
-        left
-    };
-    let cut: Vec<Strip> = strips.iter().map(cut).collect();
-    (cut != strips).then_some(cut)
-}
-
-/// Where a strip crosses the last of what crosses it and another direction before one of its ends, along: the middle of that one, and
-/// its far side.
-fn last_crossing(
-    views: &[Turned],
-    [own, its]: [&Turned; 2],
-    strip: &Strip,
-    side: usize,
-    strips: &[Strip],
-    placed: &[Beside],
-) -> Option<[f64; 2]> {
-    let crosses = |view: &&Turned| view.sine(own) > NEARLY[1] && view.sine(its) > NEARLY[1];
-    let crossings = views.iter().filter(crosses).flat_map(|view| {
-        let ends = strip.along.map(|u| view.place(own.to_map([u, strip.middle()])));
-        let [u, v] = [0, 1].map(|axis| sorted(ends.map(|end| end[axis])));
-        placed[view.direction].touching(u, v).into_iter().filter_map(move |n| {
-            let other = &strips[n];
-            let [there, here] = own.crossing(view, strip.middle(), other.middle());
-            let beyond = here + sign(side) * other.width() / 2.0 / view.sine(own);
-            (holds(other.along, there) && holds(strip.along, here)).then_some([here, beyond])
-        })
-    });
-    crossings.max_by(|a, b| (a[0] * sign(side)).total_cmp(&(b[0] * sign(side))))
-}
 
 /// The strips without what leads between two neighbouring ones of one direction through what stands askew to it. Of the pieces
 /// that are left short ones between no sides go too.

@@ -19,6 +19,7 @@ pub(super) mod heads;
 pub(super) mod joined;
 pub(super) mod known;
 pub(super) mod led;
+pub(super) mod led_into;
 pub(super) mod mouths;
 pub(super) mod onward;
 pub(super) mod openings;

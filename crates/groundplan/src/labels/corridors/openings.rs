@@ -68,14 +68,20 @@ impl<'a> Bays<'a> {
         Self { views, rows, placed }
     }
 
-    /// From where to where along they are beside a side of a way, and how far it is from post to post, metres.
-    fn beside(&self, way: &Strip, side: usize) -> Option<(Vec<[f64; 2]>, f64)> {
+    /// Those beside one side of a way, if there are some.
+    fn beside(&self, way: &Strip, side: usize) -> Option<BaysBeside> {
         let at = way.across[side];
         let near = self.placed[way.direction].touching(way.along, wider([at; 2], END)).into_iter();
         let is_beside = |row: &&Row| (row.across[1 - side] - at).abs() <= END;
         let along: Vec<[f64; 2]> = near.map(|n| self.rows[n]).filter(is_beside).map(|row| row.along).collect();
-        self.views[way.direction].pitch.filter(|_| !along.is_empty()).map(|pitch| (along, pitch))
+        self.views[way.direction].pitch.filter(|_| !along.is_empty()).map(|pitch| BaysBeside { along, pitch })
     }
+}
+
+/// Rows with bays beside one side of a way: from where to where along it each is, and how far it is from post to post, metres.
+struct BaysBeside {
+    along: Vec<[f64; 2]>,
+    pitch: f64,
 }
 
 /// What opens into a way from one side or the other, square to it, and is no bay. Of what may be one opening the parts come before
@@ -93,8 +99,8 @@ struct Passing<'a> {
     other: &'a Turned,
     way: &'a Strip,
     side: usize,
-    /// From where to where along it rows with bays are, and how far it is from post to post, metres, where there are such.
-    bays: Option<(Vec<[f64; 2]>, f64)>,
+    /// Of the rows along that side, if they have some.
+    bays: Option<BaysBeside>,
     parameters: &'a Parameters,
 }
 
@@ -198,9 +204,8 @@ impl Passing<'_> {
     /// way past it.
     fn is_as_a_way(&self, along: [f64; 2]) -> bool {
         let width = along[1] - along[0];
-        let is_wider = |(rows, pitch): &(Vec<[f64; 2]>, f64)| {
-            width > BAY * pitch || !rows.iter().any(|row| overlap(*row, along) > 0.0)
-        };
+        let is_wider =
+            |bays: &BaysBeside| width > BAY * bays.pitch || !bays.along.iter().any(|row| overlap(*row, along) > 0.0);
         (self.parameters.labels_min_width.max(WIDTH.0)..=self.parameters.labels_max_width).contains(&width)
             && self.bays.as_ref().is_none_or(is_wider)
     }

@@ -18,13 +18,6 @@ use std::mem;
 
 /// A way is so wide, metres.
 pub const WIDTH: (f64, f64) = (1.6, 8.0);
-
-/// The least width of what leads through a row, metres: where vehicles would come through, or as the wider of the aisles beside the
-/// row, if only people come through those.
-pub fn least(widest: f64) -> f64 {
-    WIDTH.0.min(widest)
-}
-
 /// A section up to this many pitches is an empty bay, by what is seen of it: posts take a little of each.
 pub const BAY: f64 = 1.03;
 /// Where no bays recur, between ends that are closed what may be a way is narrower by so much, metres.
@@ -61,6 +54,12 @@ const PATCH: f64 = 1.0;
 const BESIDE: usize = 3;
 /// Structure this near to a face stands on it, metres.
 pub const FACE: f64 = 0.25;
+
+/// The least width of what leads through a row, by those of the aisles beside it, metres: as vehicles want it, or as the widest of the
+/// aisles, if people alone come through these.
+pub fn least_width(aisles: impl Iterator<Item = f64>) -> f64 {
+    WIDTH.0.min(aisles.fold(0.0, f64::max))
+}
 
 /// A row's columns, leaning as the direction does that its uprights stand along.
 pub struct Columns<'a> {
@@ -148,7 +147,7 @@ impl<'a> Columns<'a> {
     /// half empty it may be a way or a bay.
     pub fn between_racks(&self) -> Vec<[f64; 2]> {
         let is_rack = |n: usize| self.closing(n) != Closing::Open;
-        self.gaps(|from, to| self.is_free_way(from, to, self.view.cell) && is_rack(from) && is_rack(to))
+        self.gaps(|from, to| self.is_free_way(from, to, WIDTH.0 - self.view.cell) && is_rack(from) && is_rack(to))
     }
 
     /// The same, each with what is free along the faces beside it, where posts may recur.
@@ -184,7 +183,7 @@ impl<'a> Columns<'a> {
         let ends = [self.place(from), self.place(to)];
         let is_way = off as f64 * self.view.cell <= SIDE
             && (1..count).contains(&upright)
-            && self.is_free_way(from, to, self.view.cell);
+            && self.is_free_way(from, to, self.least - self.view.cell);
         if !is_way || self.is_between_posts(from, to) {
             return is_way.then_some((ends, false));
         }
@@ -196,11 +195,12 @@ impl<'a> Columns<'a> {
         }
     }
 
-    /// True when nothing of the row is open between its ends for so much as half of a stretch.
+    /// True when nothing else of the row is open between its ends for so much as half of a stretch.
     fn is_full(&self, [from, to]: [f64; 2]) -> bool {
         let ends = [self.place(0), self.place(self.blocked.len())];
         let is_within = |[low, high]: &[f64; 2]| *low > ends[0] && *high < ends[1];
-        self.open().iter().filter(|open| is_within(open)).all(|open| open[1] - open[0] < (to - from) / 2.0)
+        let is_other = |open: &&[f64; 2]| is_within(open) && overlap(**open, [from, to]) <= 0.0;
+        self.open().iter().filter(is_other).all(|open| open[1] - open[0] < (to - from) / 2.0)
     }
 
     /// The stretches in which nothing closes the row, from where to where along its middle, in order.
@@ -429,10 +429,9 @@ impl<'a> Columns<'a> {
         self.lines.closing(self.place(n))
     }
 
-    /// True when what lies between two columns is free, and with what lies between cells as wide as a way.
-    fn is_free_way(&self, from: usize, to: usize, between_cells: f64) -> bool {
-        let width = self.place(to) - self.place(from);
-        (self.least..=WIDTH.1).contains(&(width + between_cells))
+    /// True when what lies between two columns is free, and as wide as a way that is so wide at least.
+    fn is_free_way(&self, from: usize, to: usize, least: f64) -> bool {
+        (least..=WIDTH.1).contains(&(self.place(to) - self.place(from)))
             && self.share(from, to) <= CLUTTER
             && !self.is_walled([self.place(from), self.place(to)])
     }
@@ -447,9 +446,11 @@ impl<'a> Columns<'a> {
 
     fn is_way(&self, from: usize, to: usize) -> bool {
         let is_closed = || [from, to].into_iter().all(|n| self.closing(n) == Closing::Whole);
-        let narrower = if self.pitch.is_none() { CLOSED } else { 0.0 };
-        self.is_free_way(from, to, narrower) && is_closed()
-            || self.is_free_way(from, to, 0.0) && self.is_between_posts(from, to)
+        let least = if self.pitch.is_none() { WIDTH.0 - CLOSED } else { WIDTH.0 };
+        // Shelves are as narrow as ways between aisles for people: where others are empty, too, it is one.
+        let is_alone = || self.is_free_way(from, to, self.least) && self.is_full([self.place(from), self.place(to)]);
+        (self.is_free_way(from, to, least) || is_alone()) && is_closed()
+            || self.is_free_way(from, to, WIDTH.0) && self.is_between_posts(from, to)
     }
 
     /// True when nothing stands between two columns and it is no bay that lies there, nor some of them.

@@ -1,6 +1,6 @@
 //! A row between two corridors, and what is asked of it where something may lead through.
 
-use super::sections::{self, Columns};
+use super::sections::Columns;
 use crate::ends::{holds, overlap, sorted, wider};
 use crate::labels::beside::Beside;
 use crate::labels::corridors::{Strip, UNTOLD};
@@ -37,11 +37,6 @@ pub struct Seen<'a> {
 impl Seen<'_> {
     fn middle(&self) -> f64 {
         f64::midpoint(self.row.across[0], self.row.across[1])
-    }
-
-    /// What leads through it is so wide at least, metres.
-    pub fn least(&self) -> f64 {
-        sections::least(self.widest)
     }
 
     /// Where nothing stands in it, across the direction that crosses it.

@@ -328,6 +328,14 @@ impl<'a> Bars<'a> {
         self.lead(n, row).sides()
     }
 
+    /// How far a row ends before the outer side of a strip that leads past its end, or would, metres.
+    pub fn clear_of_side(&self, n: usize, row: usize) -> Option<f64> {
+        let (sides, along) = (self.sides(n, row), self.place.rows[row].0.along);
+        let is_low = f64::midpoint(sides[0], sides[1]) < f64::midpoint(along[0], along[1]);
+        let off = self.row(row).columns.first(is_low)[0]?;
+        Some(if is_low { along[0] + off - sides[0] } else { sides[1] - along[1] + off })
+    }
+
     /// True when another leads through a row in line with a strip.
     fn is_led_through(&self, n: usize, row: usize) -> bool {
         let own = &self.strips[n];
@@ -352,7 +360,7 @@ impl<'a> Bars<'a> {
         let (place, strips) = (self.place, self.strips);
         let ([view, other], (row, between), ways) = (place.views, &place.rows[n], &place.through[n]);
         let between = between.map(|aisle| place.aisles[aisle]);
-        let least = sections::least(between.map(|aisle| strips[aisle].width()).into_iter().fold(0.0, f64::max));
+        let least = sections::least_width(between.into_iter().map(|aisle| strips[aisle].width()));
         let columns = Columns::new(self.look, &self.evidence.grid.frame, [view, other], row, view.pitch_of(row), least);
         let sides = |way: usize| self.sides(way, n);
         let is_at_wall = |end: f64| walled::ends(view, strips, row, between, view.columns(wider([end; 2], NEAR))).any();

@@ -13,8 +13,6 @@ const STEP: f64 = 0.1;
 /// Where the rows of a place are open.
 pub struct Openings<'a> {
     rows: Vec<&'a Row>,
-    /// What leads through each is so wide at least, metres.
-    least: Vec<f64>,
     /// For each row, across the direction that crosses it.
     open: Vec<Vec<[f64; 2]>>,
     /// For each direction and each width in steps, how many places of its rows are open, and of how many.
@@ -25,9 +23,8 @@ impl<'a> Openings<'a> {
     /// Of rows along so many directions.
     pub fn new(directions: usize, rows: &[Seen<'a>]) -> Self {
         let open = rows.iter().map(Seen::open).collect();
-        let least = rows.iter().map(Seen::least).collect();
         let rows = rows.iter().map(|seen| seen.row).collect();
-        let mut made = Self { rows, least, open, all: vec![Vec::new(); directions] };
+        let mut made = Self { rows, open, all: vec![Vec::new(); directions] };
         made.count();
         made
     }
@@ -88,7 +85,7 @@ impl<'a> Openings<'a> {
     fn counts_of_all(&self, direction: usize) -> Vec<[f64; 2]> {
         let rows: Vec<_> = (0..self.rows.len()).filter(|&n| self.rows[n].direction == direction).collect();
         let of_width = |step: usize| {
-            let counts = rows.iter().map(|&n| self.counts(n, (step as f64 * STEP).max(self.least[n])));
+            let counts = rows.iter().map(|&n| self.counts(n, (step as f64 * STEP).max(WIDTH.0)));
             counts.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]])
         };
         (0..=(WIDTH.1 / STEP) as usize).map(of_width).collect()

@@ -201,7 +201,7 @@ fn crossed(
                 return Vec::new();
             }
             let pitch = if view.pitch.is_some() { view.pitch_of(row) } else { common };
-            let least = sections::least(aisles.map(Strip::width).into_iter().fold(0.0, f64::max));
+            let least = sections::least_width(aisles.into_iter().map(Strip::width));
             let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, pitch, least);
             let (ways, open) = (columns.ways(), columns.open());
             let cross = |n: usize| {

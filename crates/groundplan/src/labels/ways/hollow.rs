@@ -126,7 +126,7 @@ impl<'a, 'b> Faces<'a, 'b> {
             let stands = |face: &Vec<Run>| length(common(face, &[beside])) as f64 >= BESIDE * least as f64;
             self.faces().iter().all(stands)
         };
-        (self.seen.least().min(WIDTH.0 - NARROWER)..=WIDTH.1).contains(&self.metres(to - from))
+        (WIDTH.0 - NARROWER..=WIDTH.1).contains(&self.metres(to - from))
             && self.seen.columns.is_free(ends)
             && !self.seen.columns.is_as_bays(ends)
             && are_solid((from.saturating_sub(least), from))

@@ -51,7 +51,7 @@ const SELDOM: f64 = 0.06;
 const AT_WALL: f64 = 0.001;
 /// What of a bay a frame in the wall behind it would hide, metres.
 const HIDDEN: f64 = 0.15;
-/// What leads past a row's end before a wall is so far from any number of bays, as a share of one: rows may keep clear of walls.
+/// What leads past a row's end before a wall is so far from any number of bays, as a share of one: posts and goods stand off.
 const OFF_BAYS: f64 = 0.25;
 /// What is as wide as a bay is an empty one where more would be.
 const ANYWHERE: f64 = 0.4;
@@ -259,16 +259,21 @@ impl<'a> Asked<'a> {
             && walled::sides(self.context.place.views[1], self.strip).contains(&true)
     }
 
-    /// True when it leads past a row's end before a wall, where a bar stands, and is as wide as no number of bays, even if the row kept
-    /// clear of the wall.
+    /// True when it leads past a row's end before a wall, where a bar stands, is as wide as other ways and as no number of bays, even if
+    /// that row keeps as clear of the wall as those beside it do.
     fn is_past_end_before_wall(&self) -> bool {
-        let is_no_number = |pitch: f64| {
-            let bays = self.width / pitch;
+        let bars = &self.context.bars;
+        let is_no_number = |width: f64, pitch: f64| {
+            let bays = width / pitch;
             bays > 1.0 && (bays - bays.round()).abs() >= OFF_BAYS
         };
+        let clear = || self.own.next.iter().filter_map(|&row| bars.clear_of_side(self.n, row));
         self.is_before_wall()
-            && self.pitch().is_some_and(is_no_number)
-            && self.context.bars.are_before_bars(self.n, 0.0)
+            && self.is_as_wide()
+            && self.pitch().is_some_and(|pitch| {
+                is_no_number(self.width, pitch) && clear().all(|clear| is_no_number(self.width - clear, pitch))
+            })
+            && bars.are_before_bars(self.n, 0.0)
     }
 
     /// True when it lies where an empty bay would: before a wall to which the rows beside it go on, or as bays of single rows lie.

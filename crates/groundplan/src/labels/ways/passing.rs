@@ -109,7 +109,7 @@ impl Place<'_> {
     /// The least width of what leads through the rows that something passes through, metres.
     pub fn least(&self, strips: &[Strip], own: &Passing) -> f64 {
         let aisles = own.rows.iter().flat_map(|&row| self.rows[row].1);
-        sections::least(aisles.map(|aisle| strips[self.aisles[aisle]].width()).fold(0.0, f64::max))
+        sections::least_width(aisles.map(|aisle| strips[self.aisles[aisle]].width()))
     }
 
     /// True when a width is not much less than that of the aisles beside the rows that something passes through.

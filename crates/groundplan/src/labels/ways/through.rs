@@ -53,10 +53,10 @@ const SOME: f64 = 0.0005;
 const ENDS: usize = 4;
 const GUARDED: f64 = 0.75;
 const NEVER: f64 = 0.0001;
-/// So many rows in line, but for so much, metres, end before a wall that others reach, and are open elsewhere for less than this share
-/// of what leads past them.
+/// So many rows end before a wall that others reach, in line but for so much, metres.
 const SEVERAL: usize = 2;
-const NEARLY: f64 = 0.5;
+const RAGGED: f64 = 0.5;
+/// They are open elsewhere for less than this share of what leads past them.
 const FULL: f64 = 0.5;
 
 /// The rows of a place, and where each is open.
@@ -183,7 +183,8 @@ impl<'a> Through<'a> {
     }
 
     /// The ways between the last of a row and a wall that ends it and the corridors beside it, and whether each is as wide as
-    /// bays: where all rows beside one another end in line there, for else more rows tell by one another what is a way.
+    /// bays: where all rows beside one another end in line there, for else more rows tell by one another what is a way; or several
+    /// that are full do, though others go on to the wall.
     pub fn at_walls(&self, strips: &[Strip], placed: &[Beside]) -> Vec<(Strip, bool)> {
         let at_wall = |seen: &Seen, side: usize| {
             let (ends, is_as_a_bay) = seen.columns.way_at_end(side)?;
@@ -204,7 +205,7 @@ impl<'a> Through<'a> {
                 if beside.iter().all(is_in_line)
                     && beside.iter().any(is_bounded)
                     && self.are_all(&beside, way, strips, placed)
-                    || !is_as_a_bay && self.are_several_full(n, way, |m| are_near(*m, NEARLY))
+                    || !is_as_a_bay && self.are_several_full(n, way, |m| are_near(*m, RAGGED))
                 {
                     found.push((way.clone(), *is_as_a_bay));
                 }
@@ -294,8 +295,7 @@ impl<'a> Through<'a> {
         for &next in &self.above[last] {
             for open in self.open.of(next) {
                 let both = shared(ends, *open);
-                let least = self.rows[last].least().max(self.rows[next].least());
-                if both[1] - both[0] + BETWEEN_CELLS >= least {
+                if both[1] - both[0] + BETWEEN_CELLS >= WIDTH.0 {
                     rows.push(next);
                     self.follow(rows, both, found);
                     rows.pop();

@@ -17,7 +17,7 @@ const EXPECTED: f64 = 0.001;
 pub fn find(through: &Through) -> Vec<Common> {
     let mut chains: Vec<Common> = Vec::new();
     for n in (0..through.rows().len()).filter(|&n| !through.is_wall(n)) {
-        for &ends in through.open(n).iter().filter(|ends| ends[1] - ends[0] >= through.rows()[n].least()) {
+        for &ends in through.open(n).iter().filter(|ends| ends[1] - ends[0] >= WIDTH.0) {
             follow(through, &mut vec![n], ends, &mut chains);
         }
     }
@@ -52,9 +52,7 @@ pub fn find(through: &Through) -> Vec<Common> {
 fn are_turns(through: &Through, one: &Common, other: &Common) -> bool {
     let is_beside = |n: usize, m: usize| through.next_to(n).any(|next| next == m);
     let last = |common: &Common| common.rows[common.rows.len() - 1];
-    let is_shut = |n: &usize, at: &Common| {
-        through.open(*n).iter().all(|open| overlap(*open, at.ends) < through.rows()[*n].least())
-    };
+    let is_shut = |n: &usize, at: &Common| through.open(*n).iter().all(|open| overlap(*open, at.ends) < WIDTH.0);
     let (rows, width) = (one.rows.iter().chain(&other.rows), one.width().min(other.width()));
     let places = rows.map(|&n| through.rows()[n].row.length() / width).fold(0.0, f64::max);
     one.rows.len() + other.rows.len() >= ROWS
@@ -85,7 +83,7 @@ fn follow(through: &Through, rows: &mut Vec<usize>, ends: [f64; 2], found: &mut 
     for n in next {
         for open in through.open(n) {
             let both = shared(ends, *open);
-            if both[1] - both[0] >= through.rows()[n].least() {
+            if both[1] - both[0] >= WIDTH.0 {
                 rows.push(n);
                 follow(through, rows, both, found);
                 rows.pop();

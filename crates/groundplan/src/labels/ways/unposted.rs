@@ -2,6 +2,7 @@
 //! all of them is open for longer, without one on either, two racks end.
 
 use crate::labels::corridors::Strip;
+use crate::labels::rows::sections::WIDTH;
 use crate::labels::rows::seen::Seen;
 use crate::labels::rows::shelves::Shelves;
 use crate::labels::view::runs::Run;
@@ -54,7 +55,7 @@ fn among(rows: &[(&Seen, Gaps)]) -> Vec<Strip> {
         let view = row.views[0];
         let first = view.column(row.row.along[0]);
         let ends = [from, to].map(|n| view.start[0] + (first + n) as f64 * view.cell);
-        (ends[1] - ends[0] >= row.least()).then(|| row.gate(ends)).flatten()
+        (ends[1] - ends[0] >= WIDTH.0).then(|| row.gate(ends)).flatten()
     };
     gates.filter_map(gate).collect()
 }
