@@ -183,7 +183,7 @@ impl<'a> Columns<'a> {
         let ends = [self.place(from), self.place(to)];
         let is_way = off as f64 * self.view.cell <= SIDE
             && (1..count).contains(&upright)
-            && self.is_free_way(from, to, self.least - self.view.cell);
+            && self.is_free_way(from, to, WIDTH.0 - self.view.cell);
         if !is_way || self.is_between_posts(from, to) {
             return is_way.then_some((ends, false));
         }
