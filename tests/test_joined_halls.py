@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -11,6 +13,7 @@ import groundplan
 
 Picture = npt.NDArray[np.uint8]
 Box = tuple[float, float, float, float]  # from x, from y, to x, to y
+Draw = Callable[..., None]
 
 RESOLUTION = 0.05
 
@@ -30,6 +33,21 @@ def site(floors: list[Box], racks: list[Box]) -> Picture:
 def rows(lows: list[float], pieces: list[tuple[float, float]], depth: float = 2) -> list[Box]:
     """Racks from place to place along each of some rows."""
     return [(left, low, right, low + depth) for low in lows for left, right in pieces]
+
+
+def hall_and_wing(canvas: Canvas, low: float, at: tuple[float, float], turn: float) -> tuple[Draw, Draw]:
+    """What draws boxes, metres: of a hall so much off the lower edge, and of a wing that is turned about a place."""
+    cos, sin = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+
+    def box(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
+        canvas.box(20 * (x + 4), 20 * (y + low), 20 * (right + 4), 20 * (top + low), value)
+
+    def wing(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
+        middle = (y + top) / 2
+        start = (20 * (at[0] + cos * x + sin * middle), 20 * (at[1] + cos * middle - sin * x))
+        canvas.bar(start, -turn, 20 * (right - x), 20 * (top - y), value)
+
+    return box, wing
 
 
 def found(picture: Picture) -> tuple[list[str], list[float]]:
@@ -139,14 +157,7 @@ def test_a_way_across_rows_is_none_along_the_next_wing(turn: float, free: float,
     height = 5 * (aisle + depth) + aisle
     canvas = Canvas(1640, 952)
 
-    def box(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
-        canvas.box(20 * (x + 4), 20 * (y + 10), 20 * (right + 4), 20 * (top + 10), value)
-
-    def wing(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
-        cos, sin = np.cos(np.radians(turn)), np.sin(np.radians(turn))
-        u, v = x, (y + top) / 2
-        start = (20 * (length + 9.2 + cos * u + sin * v), 20 * (6 + cos * v - sin * u))
-        canvas.bar(start, -turn, 20 * (right - x), 20 * (top - y), value)
+    box, wing = hall_and_wing(canvas, 10, (length + 9.2, 6), turn)
 
     box(-0.15, -0.15, length + 0.15, height + 0.15)
     box(length - 0.3, 18.3, length + 9, 21.6)
@@ -205,14 +216,7 @@ def test_an_aisle_leads_into_a_wing_up_to_its_first_aisle_and_not_on_through_its
     # The racks of the wing are parted about where a passage of 3 m, in line with an aisle of the hall, would lead on.
     canvas = Canvas(1500, 1500)
 
-    def box(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
-        canvas.box(20 * (x + 4), 20 * (y + 30), 20 * (right + 4), 20 * (top + 30), value)
-
-    def wing(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
-        cos, sin = np.cos(np.radians(turn)), np.sin(np.radians(turn))
-        u, v = x, (y + top) / 2
-        start = (20 * (33 + cos * u + sin * v), 20 * (41.5 + cos * v - sin * u))
-        canvas.bar(start, -turn, 20 * (right - x), 20 * (top - y), value)
+    box, wing = hall_and_wing(canvas, 30, (33, 41.5), turn)
 
     box(-0.15, -0.15, 26.15, 19.15)
     box(25.7, 9.85, 32, 13.15)
@@ -240,14 +244,7 @@ def test_a_passage_leads_up_to_the_first_way_of_a_wing_and_not_on_through_an_ais
     height = 4 * aisle + 3 * depth
     low = -height / 2 - 1.5
 
-    def box(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
-        canvas.box(20 * (x + 4), 20 * (y + 12), 20 * (right + 4), 20 * (top + 12), value)
-
-    def wing(x: float, y: float, right: float, top: float, value: int = OCCUPIED) -> None:
-        cos, sin = np.cos(np.radians(turn)), np.sin(np.radians(turn))
-        u, v = x, (y + top) / 2
-        start = (20 * (34 + cos * u + sin * v), 20 * (20 + cos * v - sin * u))
-        canvas.bar(start, -turn, 20 * (right - x), 20 * (top - y), value)
+    box, wing = hall_and_wing(canvas, 12, (34, 20), turn)
 
     box(-0.15, -0.15, 24.15, 19.15)
     box(23.7, 8 - passage / 2 - 0.15, 33, 8 + passage / 2 + 0.15)

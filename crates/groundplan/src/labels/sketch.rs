@@ -256,24 +256,25 @@ impl Plan {
             (plan, across) = Self::new(views, faced, threads).with_others(evidence, look, views);
             plan.racks = plan.find_racks(views, on_legs, &standing, threads);
         }
-        if let Some(shorter) = led_into::cut(views, &plan.strips) {
-            plan = Self::new(views, shorter, threads);
+        let laid_out = |strips: Vec<Strip>| {
+            let mut plan = Self::new(views, strips, threads);
             plan.racks = plan.find_racks(views, on_legs, &standing, threads);
+            plan
+        };
+        if let Some(shorter) = led_into::cut(views, &plan.strips) {
+            plan = laid_out(shorter);
         }
         let slots = slots::by_meetings(views, &plan.strips, &plan.meetings, &plan.racks);
         if !slots.is_empty() {
             let rest = (0..plan.strips.len()).filter(|n| !slots.contains(n)).map(|n| plan.strips[n].clone());
-            plan = Self::new(views, rest.collect(), threads);
-            plan.racks = plan.find_racks(views, on_legs, &standing, threads);
+            plan = laid_out(rest.collect());
         }
         let narrow = narrowed::past(views, &plan.strips, &plan.racks, &plan.reached(views), least);
         if narrow != plan.strips {
-            plan = Self::new(views, narrow, threads);
-            plan.racks = plan.find_racks(views, on_legs, &standing, threads);
+            plan = laid_out(narrow);
         }
         if let Some(longer) = past_last::led_on(views, &plan.strips, &plan.meetings, [&plan.rows, &plan.racks]) {
-            plan = Self::new(views, longer, threads);
-            plan.racks = plan.find_racks(views, on_legs, &standing, threads);
+            plan = laid_out(longer);
         }
         plan.racks = whole::uncrossed(views, &plan.strips, &plan.extents, &plan.racks);
         (plan, across)

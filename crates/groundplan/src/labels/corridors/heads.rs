@@ -11,7 +11,7 @@ use crate::labels::Evidence;
 use crate::labels::corridors::Strip;
 use crate::labels::junctions::shut;
 use crate::labels::rows::Row;
-use crate::labels::rows::sections::{Columns, WIDTH};
+use crate::labels::rows::sections::Columns;
 use crate::labels::view::look::Look;
 use crate::labels::view::turned::Turned;
 use crate::labels::ways::across::square_to;
@@ -203,7 +203,7 @@ impl Heads<'_> {
         let ends = [wall + away * WALL, wall + away * most];
         let before = Row { direction: self.view.direction, along: sorted(ends), across: row.faces, between: None };
         let columns =
-            Columns::new(self.look, self.frame, [self.view, self.other], &before, self.view.pitch_of(&before), WIDTH.0);
+            Columns::new(self.look, self.frame, [self.view, self.other], &before, self.view.pitch_of(&before));
         columns.first(self.side == 0).map(|off| off.map_or(most, |off| WALL + off))
     }
 

@@ -4,12 +4,12 @@
 use super::sided;
 use crate::ends::{holds, sorted};
 use crate::labels::beside::{Beside, placed};
-use crate::labels::corridors::Strip;
+use crate::labels::corridors::{ASKEW, Strip};
 use crate::labels::junctions::shut::{inner, sign};
 use crate::labels::view::turned::Turned;
 
 /// An aisle runs nearly as a way does at an angle of such a sine; ways cross both at more.
-const ALONG: [f64; 2] = [0.1, 0.5];
+const ALONG: [f64; 2] = [0.1, ASKEW];
 /// Where a way comes into an aisle is told to so much, metres.
 const STEP: f64 = 0.25;
 
@@ -78,7 +78,7 @@ impl LedOn<'_> {
     /// Where the last that crosses it and another direction does so before its end, along: its middle, and its far side.
     fn last_crossing(&self, its: &Turned) -> Option<[f64; 2]> {
         let (own, strip) = (self.own(), self.strip);
-        let crosses = |view: &&Turned| view.sine(own) > ALONG[1] && view.sine(its) > ALONG[1];
+        let crosses = |view: &&Turned| view.sine(own) > ASKEW && view.sine(its) > ASKEW;
         let crossings = self.views.iter().filter(crosses).flat_map(|view| {
             let ends = strip.along.map(|u| view.place(own.to_map([u, strip.middle()])));
             let [u, v] = [0, 1].map(|axis| sorted(ends.map(|end| end[axis])));

@@ -125,7 +125,7 @@ impl Passing<'_> {
                 open.push(wider);
             }
         }
-        let is_way = |from: usize, to: usize| self.is_as_a_way([from, to].map(|n| self.view.along(columns.start + n)));
+        let is_way = |from: usize, to: usize| self.is_as_a_way(columns.start + from..columns.start + to);
         let opens = |&(from, to): &Run| is_way(from, to) && self.has_corners(&columns, &depths, from..to);
         let open = open.into_iter().filter(opens);
         open.filter_map(|(from, to)| self.opening(&columns, &depths, from..to)).collect()
@@ -200,10 +200,9 @@ impl Passing<'_> {
         depths
     }
 
-    /// True when what opens between two places is as wide as a way, and wider than a bay where it would be one of a row beside the
-    /// way past it.
-    fn is_as_a_way(&self, along: [f64; 2]) -> bool {
-        let width = along[1] - along[0];
+    /// True when some columns are as wide as a way, and wider than a bay where they would be one of a row beside the way past them.
+    fn is_as_a_way(&self, columns: Range<usize>) -> bool {
+        let (width, along) = (self.metres(columns.len()), [columns.start, columns.end].map(|n| self.view.along(n)));
         let is_wider =
             |bays: &BaysBeside| width > BAY * bays.pitch || !bays.along.iter().any(|row| overlap(*row, along) > 0.0);
         (self.parameters.labels_min_width.max(WIDTH.0)..=self.parameters.labels_max_width).contains(&width)

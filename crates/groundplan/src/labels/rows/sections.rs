@@ -68,8 +68,6 @@ pub struct Columns<'a> {
     lines: LinesAcross<'a>,
     /// From post to post, metres, where that is known.
     pitch: Option<f64>,
-    /// What leads through it is so wide, metres.
-    least: f64,
     /// For each column, share of it that is not free.
     blocked: Vec<f64>,
     /// For each column, on which of the two faces something stands.
@@ -88,14 +86,13 @@ pub struct Free {
 }
 
 impl<'a> Columns<'a> {
-    /// The columns of a row; its uprights stand along the `other` direction, and what leads through it is so wide at least.
+    /// The columns of a row; its uprights stand along the `other` direction.
     pub fn new(
         look: &'a Look<'a>,
         frame: &'a Frame,
         [view, other]: [&'a Turned; 2],
         row: &'a Row,
         pitch: Option<f64>,
-        least: f64,
     ) -> Self {
         let turn = other.angle - view.angle;
         let lean = libm::cos(turn) / libm::sin(turn);
@@ -107,7 +104,6 @@ impl<'a> Columns<'a> {
             row,
             lines,
             pitch,
-            least,
             blocked: Vec::with_capacity(count),
             faces: Vec::with_capacity(count),
             stops: Vec::new(),
@@ -138,9 +134,10 @@ impl<'a> Columns<'a> {
         made
     }
 
-    /// The ways through the row, from where to where along its middle, in order.
-    pub fn ways(&self) -> Vec<[f64; 2]> {
-        self.gaps(|from, to| self.is_way(from, to))
+    /// The ways through the row, from where to where along its middle, in order. Those that are narrower than vehicles want are so wide
+    /// at least, metres.
+    pub fn ways(&self, least: f64) -> Vec<[f64; 2]> {
+        self.gaps(|from, to| self.is_way(from, to, least))
     }
 
     /// What is free between two ends of racks, be they of one of two that stand back to back: in a row whose bays are
@@ -336,7 +333,7 @@ impl<'a> Columns<'a> {
             let is_way = |&(from, to): &(usize, usize)| {
                 from > 0
                     && to < self.stops.len()
-                    && self.is_way(from, to)
+                    && self.is_way(from, to, WIDTH.0)
                     && !self.is_as_bays([self.place(from), self.place(to)])
             };
             let mut count = vec![0; self.stops.len() + 1];
@@ -444,12 +441,12 @@ impl<'a> Columns<'a> {
         stands.iter().filter(|share| **share > 0.0).count() as f64 > TAKEN * stands.len() as f64
     }
 
-    fn is_way(&self, from: usize, to: usize) -> bool {
+    fn is_way(&self, from: usize, to: usize, least: f64) -> bool {
         let is_closed = || [from, to].into_iter().all(|n| self.closing(n) == Closing::Whole);
-        let least = if self.pitch.is_none() { WIDTH.0 - CLOSED } else { WIDTH.0 };
+        let usual = if self.pitch.is_none() { WIDTH.0 - CLOSED } else { WIDTH.0 };
         // Shelves are as narrow as ways between aisles for people: where others are empty, too, it is one.
-        let is_alone = || self.is_free_way(from, to, self.least) && self.is_full([self.place(from), self.place(to)]);
-        (self.is_free_way(from, to, least) || is_alone()) && is_closed()
+        let is_alone = || self.is_free_way(from, to, least) && self.is_full([self.place(from), self.place(to)]);
+        (self.is_free_way(from, to, usual) || is_alone()) && is_closed()
             || self.is_free_way(from, to, WIDTH.0) && self.is_between_posts(from, to)
     }
 

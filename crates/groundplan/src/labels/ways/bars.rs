@@ -9,7 +9,7 @@ use crate::labels::Evidence;
 use crate::labels::corridors::Strip;
 use crate::labels::junctions::meeting::CLUTTER;
 use crate::labels::rows::SHORTEST;
-use crate::labels::rows::sections::{self, Columns, SIDE};
+use crate::labels::rows::sections::{Columns, SIDE};
 use crate::labels::view::look::Look;
 use std::cell::OnceCell;
 use std::iter::{self, Sum};
@@ -359,10 +359,9 @@ impl<'a> Bars<'a> {
     fn look_at(&self, n: usize) -> Closed<'a> {
         let (place, strips) = (self.place, self.strips);
         let ([view, other], (row, between), ways) = (place.views, &place.rows[n], &place.through[n]);
-        let between = between.map(|aisle| place.aisles[aisle]);
-        let least = sections::least_width(between.into_iter().map(|aisle| strips[aisle].width()));
-        let columns = Columns::new(self.look, &self.evidence.grid.frame, [view, other], row, view.pitch_of(row), least);
+        let columns = Columns::new(self.look, &self.evidence.grid.frame, [view, other], row, view.pitch_of(row));
         let sides = |way: usize| self.sides(way, n);
+        let between = between.map(|aisle| place.aisles[aisle]);
         let is_at_wall = |end: f64| walled::ends(view, strips, row, between, view.columns(wider([end; 2], NEAR))).any();
         let is_of_way = |ends: [f64; 2]| ways.iter().any(|&way| overlap(wider(sides(way), NEAR), ends) >= 0.0);
         // What leads past the row's end, or through all rows, is a way.

@@ -9,7 +9,7 @@ use crate::grid::State;
 use crate::labels::Evidence;
 use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::Strip;
-use crate::labels::rows::sections::{Columns, WIDTH};
+use crate::labels::rows::sections::Columns;
 use crate::labels::rows::{Row, SHORTEST};
 use crate::labels::view::look::Look;
 use crate::labels::view::turned::Turned;
@@ -117,9 +117,8 @@ impl Lead<'_> {
 
     /// True when it would lie between the row's ends, and nothing stands there.
     fn is_free(&self, evidence: &Evidence, look: &Look) -> bool {
-        let columns = || {
-            Columns::new(look, &evidence.grid.frame, self.views, self.row, self.views[0].pitch_of(self.row), WIDTH.0)
-        };
+        let columns =
+            || Columns::new(look, &evidence.grid.frame, self.views, self.row, self.views[0].pitch_of(self.row));
         self.is_within() && columns().is_free(self.sides())
     }
 

@@ -201,9 +201,9 @@ fn crossed(
                 return Vec::new();
             }
             let pitch = if view.pitch.is_some() { view.pitch_of(row) } else { common };
+            let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, pitch);
             let least = sections::least_width(aisles.into_iter().map(Strip::width));
-            let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, pitch, least);
-            let (ways, open) = (columns.ways(), columns.open());
+            let (ways, open) = (columns.ways(least), columns.open());
             let cross = |n: usize| {
                 let found = cross([view, other], row, (&columns, &ways, &open), &strips[n], aisles)?;
                 Some(if is_narrow(n) { found.closed() } else { found })

@@ -198,9 +198,8 @@ fn seen<'a>(
         let view = &views[row.direction];
         let middles = between.map(|n| strips[n].middle());
         let widest = between.map(|n| strips[n].width()).into_iter().fold(0.0, f64::max);
-        let least = sections::least_width(iter::once(widest));
-        let columns = Columns::new(look, &evidence.grid.frame, [view, other], reaching, view.pitch_of(row), least);
-        let ways = columns.ways();
+        let columns = Columns::new(look, &evidence.grid.frame, [view, other], reaching, view.pitch_of(row));
+        let ways = columns.ways(sections::least_width(iter::once(widest)));
         Some(Seen { own: row.along, row: reaching, columns, ways, views: [view, other], between, middles, widest })
     })
 }

@@ -202,11 +202,13 @@ impl<'a> Through<'a> {
                 };
                 let is_in_line = |m: &usize| are_near(*m, SLACK);
                 let is_bounded = |m: &usize| ways[*m].as_ref().is_some_and(|(_, is_bounded, _)| *is_bounded);
-                if beside.iter().all(is_in_line)
-                    && beside.iter().any(is_bounded)
-                    && self.are_all(&beside, way, strips, placed)
-                    || !is_as_a_bay && self.are_several_full(n, way, |m| are_near(*m, RAGGED))
-                {
+                let all_end = || {
+                    beside.iter().all(is_in_line)
+                        && beside.iter().any(is_bounded)
+                        && self.are_all(&beside, way, strips, placed)
+                };
+                let several_end = || !is_as_a_bay && self.are_several_full(n, way, |m| are_near(m, RAGGED));
+                if all_end() || several_end() {
                     found.push((way.clone(), *is_as_a_bay));
                 }
             }
@@ -216,12 +218,8 @@ impl<'a> Through<'a> {
 
     /// True when a row ends before a wall in line with others beside it, and none of these is open elsewhere for as long: where some go
     /// on to the wall, one alone might have an empty bay there.
-    fn are_several_full(&self, row: usize, way: &Strip, is_near: impl Fn(&usize) -> bool) -> bool {
-        let (mut found, mut next) = (BTreeSet::from([row]), vec![row]);
-        while let Some(n) = next.pop() {
-            let beside = self.above[n].iter().chain(&self.below[n]).copied();
-            next.extend(beside.filter(|m| !self.walls[*m] && is_near(m) && found.insert(*m)));
-        }
+    fn are_several_full(&self, row: usize, way: &Strip, is_near: impl Fn(usize) -> bool) -> bool {
+        let found = self.beside_if(row, is_near);
         let is_full = |&n: &usize| {
             let own = self.rows[n].stretch(way.across);
             let open = self.open.of(n).iter().map(|&open| self.rows[n].stretch(open));
@@ -264,10 +262,15 @@ impl<'a> Through<'a> {
 
     /// A row and those beside it, one beside another, that reach up to a place across the direction that crosses them.
     fn beside(&self, row: usize, place: f64) -> BTreeSet<usize> {
+        self.beside_if(row, |m| self.rows[m].holds(place))
+    }
+
+    /// A row and such beside it, one beside another, that are no walls.
+    fn beside_if(&self, row: usize, is_such: impl Fn(usize) -> bool) -> BTreeSet<usize> {
         let (mut found, mut next) = (BTreeSet::from([row]), vec![row]);
         while let Some(n) = next.pop() {
-            let beside = self.above[n].iter().chain(&self.below[n]).copied();
-            next.extend(beside.filter(|&m| !self.walls[m] && self.rows[m].holds(place) && found.insert(m)));
+            let beside = self.next_to(n).filter(|&m| !self.walls[m] && is_such(m));
+            next.extend(beside.filter(|&m| found.insert(m)));
         }
         found
     }
