@@ -4,6 +4,7 @@
 use super::Evidence;
 use super::view::turned::Turned;
 use crate::bands::map_each;
+use crate::ends::around;
 use std::f64::consts::FRAC_PI_2;
 
 /// Rows of squares run along the dominant direction, or square to it: whichever is nearer to this. It lies between the
@@ -50,8 +51,9 @@ impl Squares {
         // Of the view's own axes, each is one of the squares', be it backwards.
         let along = extent(&free_columns(view), view.start[0], view.cell);
         let across = extent(&free_rows(view, evidence.threads), view.start[1], view.cell);
-        let corners = [0, 1].map(|n| made.place(view.to_map([along[n], across[n]])));
-        made.corners = [f64::min, f64::max].map(|end| [0, 1].map(|axis| end(corners[0][axis], corners[1][axis])));
+        let corners: Vec<_> = view.rectangle(along, across).into_iter().map(|corner| made.place(corner)).collect();
+        let [u, v] = [0, 1].map(|axis| around(corners.iter().map(|corner| corner[axis])));
+        made.corners = [0, 1].map(|end| [u[end], v[end]]);
         made
     }
 

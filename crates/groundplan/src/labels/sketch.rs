@@ -273,6 +273,9 @@ impl Plan {
         if narrow != plan.strips {
             plan = laid_out(narrow);
         }
+        if let Some(longer) = past_goods::past_piles(views, &plan.strips, least) {
+            plan = laid_out(longer);
+        }
         if let Some(longer) = past_last::led_on(views, &plan.strips, &plan.meetings, [&plan.rows, &plan.racks]) {
             plan = laid_out(longer);
         }

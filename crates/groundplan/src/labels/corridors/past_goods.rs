@@ -1,6 +1,6 @@
 //! Aisles that goods on the floor narrow: racks go on along both sides, and past the goods one comes to the next way.
 
-use super::barriers;
+use super::barriers::{self, DOOR};
 use super::columns::BAY;
 use super::joined;
 use super::pieces::BESIDE;
@@ -23,6 +23,17 @@ const CROSSING: f64 = 4.0;
 const BEYOND: f64 = 0.8;
 /// Goods narrow it where so much of a column is not free.
 const GOODS: f64 = 0.1;
+/// A pile of them leaves less than half of it free for so far along, metres, and over so much of that: what is thinner may be a wall,
+/// as what is askew to it, and what is longer no goods. Past it there is a lane that is so wide, metres, and free but for this share.
+const HALF: f64 = 0.4;
+const PILE: [f64; 2] = [0.8, 4.0];
+const ALONG: f64 = 0.6;
+const LANE: (f64, f64) = (0.3, 0.02);
+/// A way leads past such goods to the next way where it ends so near to them, metres, or to another piece of it, no farther off than so
+/// many times as it is wide; they have one side in line, and the narrower one is so many times as wide as the other.
+const NEAR: f64 = 1.0;
+const APART: f64 = 3.0;
+const ALIKE: f64 = 0.6;
 /// It is led on no farther than this, metres.
 const FARTHEST: f64 = 60.0;
 /// So near to where racks end beside it, metres, lies the way that it leads to, over floor that is free but for this share.
@@ -31,18 +42,42 @@ const CLUTTER: f64 = 0.1;
 
 /// The strips, each as far on as racks stand along both its sides and one gets past what stands between, up to another way;
 /// pieces that come to meet are one, no narrower than the least that a corridor is.
-pub fn led_on(views: &[Turned], mut strips: Vec<Strip>, least: f64) -> Vec<Strip> {
+pub fn led_on(views: &[Turned], strips: Vec<Strip>, least: f64) -> Vec<Strip> {
+    longer(views, strips, least, |ahead| ahead.end())
+}
+
+fn longer(
+    views: &[Turned],
+    mut strips: Vec<Strip>,
+    least: f64,
+    end: impl Fn(&Ahead) -> Option<f64>,
+) -> Vec<Strip> {
     let mut placed = placed(views, strips.iter().map(Strip::place));
     let mut is_longer = false;
     for n in (0..strips.len()).filter(|&n| !strips[n].bays && !strips[n].is_short()).collect::<Vec<_>>() {
         for side in [0, 1] {
-            let Some(end) = (Ahead { views, strips: &strips, placed: &placed, n, side }).end() else { continue };
+            let ahead = Ahead { views, strips: &strips, placed: &placed, n, side };
+            let Some(end) = end(&ahead) else { continue };
             (strips[n].along[side], strips[n].held[side]) = (end, UNTOLD[side]);
             placed[strips[n].direction].add(n, strips[n].along, strips[n].across);
             is_longer = true;
         }
     }
     if is_longer { joined::join(views, strips, least) } else { strips }
+}
+
+/// Columns over which half of a strip is not free: goods, past which one gets, or not; and whether it is closed in one of them.
+struct Narrow {
+    on: Range<usize>,
+    is_pile: bool,
+    closes: bool,
+}
+
+/// The strips, each past a pile of goods at its end to what lies beyond; nothing where none is longer. Of those that are known late
+/// others may tell where ways are.
+pub fn past_piles(views: &[Turned], strips: &[Strip], least: f64) -> Option<Vec<Strip>> {
+    let longer = longer(views, strips.to_vec(), least, |ahead| ahead.past_goods_at_end());
+    (longer != strips).then_some(longer)
 }
 
 /// What lies beyond one end of a strip.
@@ -70,14 +105,59 @@ impl Ahead<'_> {
         let columns = self.open();
         let own = view.columns(strip.along);
         let is_racked = self.racked(&own).count(0..own.len()) as f64 >= RACKED * own.len() as f64;
+        if let Some(end) = self.past_goods_at_end() {
+            return Some(end);
+        }
         let least = if is_racked { LONG * strip.width() } else { CROSSING.max(LONG * strip.width()) };
         let mut ends = self.racked_up_to(&columns, (least / view.cell) as usize).into_iter().rev();
         ends.find_map(|count| {
             let on =
                 if self.side == 0 { columns.end - count..columns.end } else { columns.start..columns.start + count };
             let end = view.along(if self.side == 0 { on.start } else { on.end });
-            if self.gets_past_goods(on) { self.next_way(end) } else { None }
+            if self.gets_past_goods(&on) { self.next_way(end) } else { None }
         })
+    }
+
+    /// Where beyond goods at its end it leads on.
+    fn past_goods_at_end(&self) -> Option<f64> {
+        let columns = self.open();
+        self.other_piece(&columns).or_else(|| self.past_pile(&columns))
+    }
+
+    /// Where another piece of it begins beyond goods, over some columns, be racks beside these empty.
+    fn other_piece(&self, columns: &Range<usize>) -> Option<f64> {
+        let (strip, view) = (self.strip(), self.view());
+        let end = view.along(if self.side == 0 { columns.start } else { columns.end });
+        let begins = |other: &Strip| (other.along[1 - self.side] - end).abs() <= view.cell;
+        let is_in_line = |other: &Strip| {
+            let widths = [strip.width(), other.width()];
+            (0..2).any(|side| (strip.across[side] - other.across[side]).abs() <= SAME)
+                && widths[0].min(widths[1]) >= ALIKE * widths[0].max(widths[1])
+        };
+        let is_piece = |other: &Strip| begins(other) && is_in_line(other) && !other.bays && !other.is_short();
+        let there = self.placed[strip.direction].touching(wider([end; 2], view.cell), strip.across);
+        let is_near = columns.len() as f64 * view.cell <= APART * strip.width();
+        let is_there = is_near && there.into_iter().any(|m| m != self.n && is_piece(&self.strips[m]));
+        (is_there && self.gets_past_goods(columns)).then_some(end)
+    }
+
+    /// Where the next way begins beyond goods that narrow it where it ends.
+    fn past_pile(&self, columns: &Range<usize>) -> Option<f64> {
+        let view = self.view();
+        let mut piles = self.narrows(columns).into_iter().filter(|narrow| narrow.is_pile).map(|narrow| narrow.on);
+        let pile = if self.side == 0 { piles.next_back() } else { piles.next() }?;
+        let (on, off) = if self.side == 0 {
+            (pile.start..columns.end, columns.end - pile.end)
+        } else {
+            (columns.start..pile.end, pile.start - columns.start)
+        };
+        let end = view.along(if self.side == 0 { on.start } else { on.end });
+        // It ends before the goods, and not at a way.
+        let before = sorted([self.strip().along[self.side], view.along(if self.side == 0 { pile.end } else { pile.start })]);
+        let is_there = off as f64 * view.cell <= NEAR
+            && self.ways_across(wider(before, view.cell), 0.0).is_empty()
+            && self.gets_past_goods(&on);
+        if is_there { self.next_way(end) } else { None }
     }
 
     /// So many columns beyond its end, along at least so many of which racks stand, with no gap in these that is longer than a
@@ -105,13 +185,46 @@ impl Ahead<'_> {
     }
 
     /// True when goods narrow it in some columns, and one gets past them.
-    fn gets_past_goods(&self, on: Range<usize>) -> bool {
+    fn gets_past_goods(&self, on: &Range<usize>) -> bool {
         let (strip, view) = (self.strip(), self.view());
         let [low, high] = wider(strip.across, -SAME);
+        // One gets past what leaves a lane.
+        let narrows = self.narrows(on);
+        let gets_past = |at: usize, Narrow { on, is_pile, .. }: &Narrow| *is_pile && (on.start..=on.end).contains(&at);
+        let stops = |at: &usize| !narrows.iter().any(|narrow| gets_past(*at, narrow));
         view.blocked_where(on.clone(), low, high, |share| share > GOODS).any()
-            && barriers::stops(view, strip.across, on.clone()).is_empty()
+            && !barriers::stops(view, strip.across, on.clone()).iter().any(stops)
             && !barriers::beyond_a_side(view, strip.across, beyond(strip.across), on.clone()).any()
-            && !barriers::doors(view, beyond(strip.across), on).any()
+            && (strip.width() > DOOR || !barriers::doors(view, beyond(strip.across), on.clone()).any())
+    }
+
+    /// Over which of some columns half of it is not free.
+    fn narrows(&self, columns: &Range<usize>) -> Vec<Narrow> {
+        let (strip, view) = (self.strip(), self.view());
+        let [low, high] = shut::inner(strip);
+        let closed = view.some_closed(columns.clone(), low, high);
+        let [some, mut half] =
+            [GOODS, HALF].map(|least| view.blocked_where(columns.clone(), low, high, |share| share > least));
+        half |= &closed;
+        let mut narrowed = closed.clone();
+        narrowed |= &some;
+        let lanes = ((strip.width() - LANE.0) / view.cell).max(0.0) as usize;
+        let narrow = |run: Range<usize>| {
+            let at = |n: usize| columns.start + n;
+            let most = half.runs(run.clone(), true).fold(run.end..run.start, |most, half| {
+                most.start.min(half.start)..most.end.max(half.end)
+            });
+            let on = at(most.start)..at(most.end);
+            let is_free = |n: usize| {
+                let low = strip.across[0] + n as f64 * view.cell;
+                view.mean_blocked(on.clone(), low, low + LANE.0) <= LANE.1
+            };
+            let is_pile = holds(PILE, on.len() as f64 * view.cell)
+                && (0..=lanes).any(is_free)
+                && half.count(most.clone()) as f64 >= ALONG * most.len() as f64;
+            Narrow { on: at(run.start)..at(run.end), is_pile, closes: closed.count(run) > 0 }
+        };
+        narrowed.runs(0..columns.len(), true).filter(|run| half.count(run.clone()) > 0).map(narrow).collect()
     }
 
     /// In which of some columns ways of other directions cross it.
@@ -145,25 +258,28 @@ impl Ahead<'_> {
         found
     }
 
-    /// The columns beyond its end up to where it is closed, or another strip of its direction lies there.
+    /// The columns beyond its end up to where it is closed, and not by goods, or another strip of its direction lies there.
     fn open(&self) -> Range<usize> {
         let (strip, view) = (self.strip(), self.view());
         let end = strip.along[self.side];
         let mut beyond = sorted([end, end + shut::sign(self.side) * FARTHEST]);
         for m in self.placed[strip.direction].touching(beyond, strip.across) {
             let other = &self.strips[m];
-            if m != self.n && overlap(other.across, strip.across) > 0.0 && overlap(other.along, beyond) > 0.0 {
+            // What goods leave of it is no other.
+            let is_lane = other.width() < ALIKE * strip.width() && other.is_short();
+            let is_there = overlap(other.across, strip.across) > 0.0 && overlap(other.along, beyond) > 0.0;
+            if m != self.n && is_there && !is_lane {
                 let begins = other.along[1 - self.side];
                 beyond[self.side] = if self.side == 0 { begins.min(end) } else { begins.max(end) };
             }
         }
         let [from, to] = beyond.map(|u| view.border(u).min(view.size[0]));
-        let [low, high] = shut::inner(strip);
-        let is_closed = |c: &usize| view.is_closed(*c, low, high);
+        let closing = self.narrows(&(from..to)).into_iter().filter(|narrow| narrow.closes && !narrow.is_pile);
+        let mut walls = closing.map(|narrow| narrow.on);
         if self.side == 0 {
-            (from..to).rev().find(is_closed).map_or(from, |c| c + 1)..to
+            walls.next_back().map_or(from, |run| run.end)..to
         } else {
-            from..(from..to).find(is_closed).unwrap_or(to)
+            from..walls.next().map_or(to, |run| run.start)
         }
     }
 

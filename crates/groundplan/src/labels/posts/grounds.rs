@@ -4,7 +4,8 @@ use crate::directions::Directions;
 use crate::ends::{around, sorted};
 use crate::labels::recall::Key;
 use crate::labels::rows::Row;
-use crate::labels::view::turned::{Turned, rectangle};
+use crate::labels::view::axes::Axes;
+use crate::labels::view::turned::Turned;
 use std::ops::Range;
 
 /// The sides of what stands across the direction, or nearly, are so much off it at most.
@@ -65,9 +66,7 @@ impl Grounds {
 
 /// The corners of a row in the map frame, counter-clockwise.
 pub fn on_map(directions: &Directions, row: &Row) -> [[f64; 2]; 4] {
-    let angle = directions.angles[row.direction];
-    let [cos, sin] = [libm::cos(angle), libm::sin(angle)];
-    rectangle(row.along, row.across).map(|[u, v]| [u * cos - v * sin, u * sin + v * cos])
+    Axes::of(directions, row.direction).rectangle(row.along, row.across)
 }
 
 fn sides(corners: &[[f64; 2]; 4]) -> [[[f64; 2]; 2]; 4] {

@@ -16,6 +16,7 @@ use crate::labels::Scene;
 use crate::labels::near::Near;
 use crate::labels::rows::Row;
 use crate::labels::rows::blocks;
+use crate::labels::view::axes::Axes;
 use std::collections::BTreeMap;
 
 /// From frame to frame, metres, and in depths at least.
@@ -64,6 +65,7 @@ pub fn find(scene: &Scene, uprights: &[Upright]) -> Vec<Rack> {
         found.extend(leaning);
         let mut found = back_to_back(found);
         against::up_to_walls(&map, &mut found);
+        lean(&mut found, Axes::of(directions, direction).lean);
         found
     };
     let mut racks = map_each(directions.angles.len(), threads, along).concat();
@@ -84,13 +86,23 @@ pub fn find(scene: &Scene, uprights: &[Upright]) -> Vec<Rack> {
     racks.into_iter().zip(stays).filter_map(|(rack, stays)| stays.then_some(rack)).collect()
 }
 
+/// Places along racks as they lean with what crosses them.
+fn lean(racks: &mut [Rack], lean: f64) {
+    for Rack { row, .. } in racks {
+        let by = lean * f64::midpoint(row.across[0], row.across[1]);
+        row.along = row.along.map(|u| u - by);
+    }
+}
+
 /// True when a row lies over some of another's middle line.
 fn lies_over(directions: &Directions, row: &Row, other: &Row) -> bool {
-    let [own, its] = [row, other].map(|row| directions.angles[row.direction]);
-    let (sin, cos) = (libm::sin(its - own), libm::cos(its - own));
+    let [own, its] = [row, other].map(|row| Axes::of(directions, row.direction));
     let v = f64::midpoint(other.across[0], other.across[1]);
     let mut places = steps(other.along, row.depth().min(row.length()) / 2.0);
-    places.any(|u| holds(row.along, u * cos - v * sin) && holds(row.across, u * sin + v * cos))
+    places.any(|u| {
+        let [u, v] = own.place(its.to_map([u, v]));
+        holds(row.along, u) && holds(row.across, v)
+    })
 }
 
 /// Frames that follow one another at one pitch, and that.

@@ -36,6 +36,9 @@ pub const TAKEN: f64 = 0.5;
 const BETWEEN: f64 = 0.25;
 /// No more than this share of a column is not free where nothing closes a row.
 pub const LEFT: f64 = 0.25;
+/// Racks end so near to a side, metres, beside goods that leave so much of what lies between.
+const AT_SIDE: f64 = 0.5;
+const BESIDE_GOODS: f64 = 0.5;
 /// A way is free but for this share, metre for metre: one walks round what was left in it.
 const CLUTTER: f64 = 0.2;
 /// Two posts across from each other, be they off by the map's error, take no more along a row, metres.
@@ -94,8 +97,7 @@ impl<'a> Columns<'a> {
         row: &'a Row,
         pitch: Option<f64>,
     ) -> Self {
-        let turn = other.angle - view.angle;
-        let lean = libm::cos(turn) / libm::sin(turn);
+        let lean = view.lean(other);
         let middle = f64::midpoint(row.across[0], row.across[1]);
         let count = ((row.along[1] - row.along[0]) / view.cell) as usize;
         let lines = LinesAcross { look, frame, view, across: row.across, middle, lean };
@@ -302,6 +304,19 @@ impl<'a> Columns<'a> {
     pub fn is_free(&self, sides: [f64; 2]) -> bool {
         let (first, last) = self.inner(sides);
         first < last && self.share(first, last) <= CLUTTER && !self.stands_between(sides)
+    }
+
+    /// True when racks end at both of two sides, and goods that stand between leave most of it free.
+    pub fn is_free_beside_goods(&self, sides: [f64; 2]) -> bool {
+        let column = |u: f64| (((u - self.row.along[0]) / self.view.cell).max(0.0) as usize).min(self.blocked.len());
+        let ends = |side: f64| {
+            let [from, to] = wider([side; 2], AT_SIDE).map(column);
+            (from..to).any(|n| self.blocked[n] >= TAKEN || self.closing(n) == Closing::Whole)
+        };
+        let (first, last) = self.inner(sides);
+        let is_free: Vec<bool> = (first..last).map(|n| self.blocked[n] <= LEFT && !self.stops[n]).collect();
+        let longest = runs(&is_free, true).into_iter().map(|(from, to)| to - from).max().unwrap_or(0);
+        longest as f64 * self.view.cell >= BESIDE_GOODS * (sides[1] - sides[0]) && sides.into_iter().all(ends)
     }
 
     /// In how many places of the row, but for what lies between two sides and the ways through it that are no bays, as much beside one

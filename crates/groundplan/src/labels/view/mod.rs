@@ -1,6 +1,7 @@
 //! The map as labels see it: turned so that one direction lies along its columns, as sums of what is free and taken in any
 //! part of it, and looked along straight lines.
 
+pub(super) mod axes;
 pub(super) mod lined;
 pub(super) mod look;
 pub(super) mod panes;

@@ -1,6 +1,7 @@
 //! The map turned so that one direction lies along the columns: where its places are, and by which keys what is found in
 //! it is kept. What its cells hold is in `sampled.rs`, what lies on its lines in `lined.rs`.
 
+use super::axes::{Axes, cotangent};
 use super::lined::Lined;
 use super::look::{LANES, Look};
 use super::panes::{Across, Pane};
@@ -25,15 +26,13 @@ use std::sync::Arc;
 /// Cells of the turned raster are about this large, metres.
 const CELL: f64 = 0.1;
 
-/// One direction's view of the map. Places along it (u) and across it (v) are metres in the map frame turned by the
-/// direction: u = p.t with t = (cos, sin), v = p.n with n = (-sin, cos).
+/// One direction's view of the map. Places along it (u) and across it (v) are those of its [`Axes`].
 pub struct Turned {
     /// Index of the direction.
     pub direction: usize,
     /// Its angle in the map frame.
     pub angle: f64,
-    /// Its cosine and sine.
-    heading: [f64; 2],
+    axes: Axes,
     /// Side of a cell, metres.
     pub cell: f64,
     /// Place of the first cell's lower corner.
@@ -101,10 +100,9 @@ impl Turned {
     fn by_itself(scene: &Scene, direction: usize) -> Self {
         let frame = &scene.grid.frame;
         let angle = scene.directions.angles[direction];
-        let (cos, sin) = (libm::cos(angle), libm::sin(angle));
-        let turn = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
+        let axes = Axes::of(scene.directions, direction);
         let (w, h) = (frame.width as f64, frame.height as f64);
-        let corners = [[0.0, 0.0], [w, 0.0], [0.0, h], [w, h]].map(|p| turn(frame.to_metres(p)));
+        let corners = [[0.0, 0.0], [w, 0.0], [0.0, h], [w, h]].map(|p| axes.place(frame.to_metres(p)));
         let low = |axis: usize| corners.iter().map(|c| c[axis]).fold(f64::INFINITY, f64::min);
         let high = |axis: usize| corners.iter().map(|c| c[axis]).fold(f64::NEG_INFINITY, f64::max);
         let side = (CELL / frame.resolution).round().max(1.0);
@@ -115,7 +113,7 @@ impl Turned {
         Self {
             direction,
             angle,
-            heading: [cos, sin],
+            axes,
             cell,
             start,
             size,
@@ -144,7 +142,7 @@ impl Turned {
     fn turned_from_another(mut self, scene: &Scene) -> Self {
         let frame = &scene.grid.frame;
         let sample = self.cell / f64::from(self.samples);
-        let is_whole = !self.is_fine(frame) && !are_many(self.size) && !are_many([self.size[1], self.size[0]]);
+        let is_whole = self.axes.lean == 0.0 && !self.is_fine(frame) && !are_many(self.size) && !are_many([self.size[1], self.size[0]]);
         let Some(quarter) = Quarter::of(scene.directions, frame, sample, self.direction).filter(|_| is_whole) else {
             return self;
         };
@@ -168,7 +166,7 @@ impl Turned {
 
     /// Takes what frames among some uprights tell.
     pub fn take_frames(&mut self, uprights: &[Upright]) {
-        self.framed = framed::pitch(uprights, self.heading);
+        self.framed = framed::pitch(uprights, self.axes.heading);
     }
 
     /// Takes the pitches of its own of some racks on legs.
@@ -261,7 +259,7 @@ impl Turned {
 
     /// Keys of the view and of its lines.
     fn find_keys(&self) -> (Key, Arc<Vec<Key>>) {
-        let numbers = [self.angle, self.cell, self.start[0], self.start[1]];
+        let numbers = [self.angle, self.axes.lean, self.cell, self.start[0], self.start[1]];
         let lines = self.offsets.iter().zip(self.covered.iter()).zip(self.touched.iter());
         let key = |((offset, covered), touched): ((&f64, &Bits), &Bits)| {
             let columns = 0..self.size[0];
@@ -304,15 +302,13 @@ impl Turned {
     }
 
     /// Place along and across of a point of the map frame.
-    pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let [cos, sin] = self.heading;
-        [x * cos + y * sin, y * cos - x * sin]
+    pub fn place(&self, point: [f64; 2]) -> [f64; 2] {
+        self.axes.place(point)
     }
 
     /// The point of the map frame at a place.
-    pub fn to_map(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        let [cos, sin] = self.heading;
-        [u * cos - v * sin, u * sin + v * cos]
+    pub fn to_map(&self, place: [f64; 2]) -> [f64; 2] {
+        self.axes.to_map(place)
     }
 
     /// Where what lies at `t` across of another direction crosses what lies at `v` across of this one: the place along
@@ -320,9 +316,14 @@ impl Turned {
     pub fn crossing(&self, other: &Self, v: f64, t: f64) -> [f64; 2] {
         let turn = other.angle - self.angle;
         let (sin, cos) = (libm::sin(turn), libm::cos(turn));
-        // A point at (s, t) of the other direction lies at u = s cos - t sin, v = s sin + t cos.
+        // But for what either leans a point at (s, t) of the other direction lies at u = s cos - t sin, v = s sin + t cos.
         let s = (v - t * cos) / sin;
-        [s, s * cos - t * sin]
+        [s - t * other.axes.lean, s * cos - t * sin - v * self.axes.lean]
+    }
+
+    /// How far along it what runs along another direction comes for each metre across.
+    pub fn lean(&self, other: &Self) -> f64 {
+        cotangent(other.angle - self.angle) - self.axes.lean
     }
 
     /// The sine of the angle to another direction, whichever way either runs.
@@ -332,7 +333,7 @@ impl Turned {
 
     /// A rectangle of places, counter-clockwise, as a polygon in the map frame.
     pub fn rectangle(&self, along: [f64; 2], across: [f64; 2]) -> Vec<[f64; 2]> {
-        rectangle(along, across).map(|corner| self.to_map(corner)).to_vec()
+        self.axes.rectangle(along, across).to_vec()
     }
 
     /// The column that holds place `u`, the first or last when it lies outside.

@@ -3,10 +3,8 @@
 use crate::ends::{around, wider};
 use crate::labels::beside::Beside;
 use crate::labels::rows::Row;
+use crate::labels::view::axes::SQUARE;
 use crate::labels::view::turned::Turned;
-
-/// Directions are square to each other but for an angle of this sine.
-const SQUARE: f64 = 0.05;
 
 /// Of strips by their directions and places those along another direction that may lead across a row; none is wider than
 /// the widest.
@@ -24,7 +22,7 @@ pub fn crossing(views: &[Turned], direction: usize) -> Option<&Turned> {
     views.iter().max_by(|a, b| sine(a).total_cmp(&sine(b))).filter(|view| sine(view) > 0.5)
 }
 
-/// The same if it is square to it.
+/// The same if it is square to it, or places along lean with it.
 pub fn square_to(views: &[Turned], direction: usize) -> Option<&Turned> {
-    crossing(views, direction).filter(|view| libm::cos(view.angle - views[direction].angle).abs() <= SQUARE)
+    crossing(views, direction).filter(|other| views[direction].lean(other).abs() <= SQUARE)
 }

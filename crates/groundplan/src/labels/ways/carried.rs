@@ -115,11 +115,12 @@ impl Lead<'_> {
         !others.into_iter().any(|n| n != own && is_there(&strips[n]))
     }
 
-    /// True when it would lie between the row's ends, and nothing stands there.
+    /// True when it would lie between the row's ends, and nothing stands there, or goods between the ends of racks.
     fn is_free(&self, evidence: &Evidence, look: &Look) -> bool {
         let columns =
             || Columns::new(look, &evidence.grid.frame, self.views, self.row, self.views[0].pitch_of(self.row));
-        self.is_within() && columns().is_free(self.sides())
+        let is_free = |columns: Columns| columns.is_free(self.sides()) || columns.is_free_beside_goods(self.sides());
+        self.is_within() && is_free(columns())
     }
 
     /// True when the map shows floor where it would lead through the row, and no leg.
