@@ -273,7 +273,7 @@ impl Plan {
         if narrow != plan.strips {
             plan = laid_out(narrow);
         }
-        if let Some(longer) = past_goods::past_piles(views, &plan.strips, least) {
+        if let Some(longer) = past_goods::past_piles(views, &plan.strips, &plan.rows, least) {
             plan = laid_out(longer);
         }
         if let Some(longer) = past_last::led_on(views, &plan.strips, &plan.meetings, [&plan.rows, &plan.racks]) {

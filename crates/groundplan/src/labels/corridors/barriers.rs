@@ -17,7 +17,7 @@ const DOCK: f64 = 0.4;
 const LONG: f64 = 1.5;
 const THIN: f64 = 0.5;
 /// And leaves free no more than a door, metres.
-pub const DOOR: f64 = 2.5;
+const DOOR: f64 = 2.5;
 /// A wall with a door in it bars more than this share of what lies beside the strip, on both sides.
 const BESIDE: f64 = 0.7;
 /// What is barred within so much of the strip's sides is the sides, metres.

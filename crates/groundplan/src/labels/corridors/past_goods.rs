@@ -1,6 +1,6 @@
 //! Aisles that goods on the floor narrow: racks go on along both sides, and past the goods one comes to the next way.
 
-use super::barriers::{self, DOOR};
+use super::barriers;
 use super::columns::BAY;
 use super::joined;
 use super::pieces::BESIDE;
@@ -10,8 +10,9 @@ use crate::ends::{around, holds, overlap, sorted, wider};
 use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::{ASKEW, Strip, UNTOLD};
 use crate::labels::junctions::shut;
-use crate::labels::rows::SAME;
+use crate::labels::rows::{Row, SAME};
 use crate::labels::view::turned::Turned;
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// It leads on for so many widths at least, and where less than this share of its own sides is held, which are those of the
@@ -46,12 +47,7 @@ pub fn led_on(views: &[Turned], strips: Vec<Strip>, least: f64) -> Vec<Strip> {
     longer(views, strips, least, |ahead| ahead.end())
 }
 
-fn longer(
-    views: &[Turned],
-    mut strips: Vec<Strip>,
-    least: f64,
-    end: impl Fn(&Ahead) -> Option<f64>,
-) -> Vec<Strip> {
+fn longer(views: &[Turned], mut strips: Vec<Strip>, least: f64, end: impl Fn(&Ahead) -> Option<f64>) -> Vec<Strip> {
     let mut placed = placed(views, strips.iter().map(Strip::place));
     let mut is_longer = false;
     for n in (0..strips.len()).filter(|&n| !strips[n].bays && !strips[n].is_short()).collect::<Vec<_>>() {
@@ -73,10 +69,12 @@ struct Narrow {
     closes: bool,
 }
 
-/// The strips, each past a pile of goods at its end to what lies beyond; nothing where none is longer. Of those that are known late
-/// others may tell where ways are.
-pub fn past_piles(views: &[Turned], strips: &[Strip], least: f64) -> Option<Vec<Strip>> {
-    let longer = longer(views, strips.to_vec(), least, |ahead| ahead.past_goods_at_end());
+/// The strips, each that runs along a row past a pile of goods at its end to what lies beyond; nothing where none is longer. What
+/// narrows a way across rows may be what is left of the next one.
+pub fn past_piles(views: &[Turned], strips: &[Strip], rows: &[Row], least: f64) -> Option<Vec<Strip>> {
+    let aisles: BTreeSet<usize> = rows.iter().filter_map(|row| row.between).flatten().collect();
+    let end = |ahead: &Ahead| if aisles.contains(&ahead.n) { ahead.past_goods_at_end() } else { None };
+    let longer = longer(views, strips.to_vec(), least, end);
     (longer != strips).then_some(longer)
 }
 
@@ -102,25 +100,23 @@ impl Ahead<'_> {
     /// Up to where it leads on.
     fn end(&self) -> Option<f64> {
         let (strip, view) = (self.strip(), self.view());
-        let columns = self.open();
+        // What closes a way across rows may be what is left of the next row.
+        let columns = self.open(false);
         let own = view.columns(strip.along);
         let is_racked = self.racked(&own).count(0..own.len()) as f64 >= RACKED * own.len() as f64;
-        if let Some(end) = self.past_goods_at_end() {
-            return Some(end);
-        }
         let least = if is_racked { LONG * strip.width() } else { CROSSING.max(LONG * strip.width()) };
         let mut ends = self.racked_up_to(&columns, (least / view.cell) as usize).into_iter().rev();
         ends.find_map(|count| {
             let on =
                 if self.side == 0 { columns.end - count..columns.end } else { columns.start..columns.start + count };
             let end = view.along(if self.side == 0 { on.start } else { on.end });
-            if self.gets_past_goods(&on) { self.next_way(end) } else { None }
+            if self.gets_past_goods(&on, false) { self.next_way(end) } else { None }
         })
     }
 
     /// Where beyond goods at its end it leads on.
     fn past_goods_at_end(&self) -> Option<f64> {
-        let columns = self.open();
+        let columns = self.open(true);
         self.other_piece(&columns).or_else(|| self.past_pile(&columns))
     }
 
@@ -138,7 +134,7 @@ impl Ahead<'_> {
         let there = self.placed[strip.direction].touching(wider([end; 2], view.cell), strip.across);
         let is_near = columns.len() as f64 * view.cell <= APART * strip.width();
         let is_there = is_near && there.into_iter().any(|m| m != self.n && is_piece(&self.strips[m]));
-        (is_there && self.gets_past_goods(columns)).then_some(end)
+        (is_there && self.gets_past_goods(columns, true)).then_some(end)
     }
 
     /// Where the next way begins beyond goods that narrow it where it ends.
@@ -152,11 +148,12 @@ impl Ahead<'_> {
             (columns.start..pile.end, pile.start - columns.start)
         };
         let end = view.along(if self.side == 0 { on.start } else { on.end });
-        // It ends before the goods, and not at a way.
-        let before = sorted([self.strip().along[self.side], view.along(if self.side == 0 { pile.end } else { pile.start })]);
+        // It ends before the goods, and not at a way: what narrows it beyond one may be the next row.
+        let inwards = self.strip().along[self.side] - shut::sign(self.side) * NEAR;
+        let before = sorted([inwards, view.along(if self.side == 0 { pile.end } else { pile.start })]);
         let is_there = off as f64 * view.cell <= NEAR
-            && self.ways_across(wider(before, view.cell), 0.0).is_empty()
-            && self.gets_past_goods(&on);
+            && self.ways_across(before, 0.0).is_empty()
+            && self.gets_past_goods(&on, true);
         if is_there { self.next_way(end) } else { None }
     }
 
@@ -185,17 +182,21 @@ impl Ahead<'_> {
     }
 
     /// True when goods narrow it in some columns, and one gets past them.
-    fn gets_past_goods(&self, on: &Range<usize>) -> bool {
+    fn gets_past_goods(&self, on: &Range<usize>, past_piles: bool) -> bool {
         let (strip, view) = (self.strip(), self.view());
         let [low, high] = wider(strip.across, -SAME);
         // One gets past what leaves a lane.
-        let narrows = self.narrows(on);
-        let gets_past = |at: usize, Narrow { on, is_pile, .. }: &Narrow| *is_pile && (on.start..=on.end).contains(&at);
-        let stops = |at: &usize| !narrows.iter().any(|narrow| gets_past(*at, narrow));
+        let narrows = if past_piles { self.narrows(on) } else { Vec::new() };
+        let piles = narrows.into_iter().filter(|narrow| narrow.is_pile).map(|narrow| narrow.on);
+        let piles: Vec<Range<usize>> = piles.collect();
+        let is_beside = |at: usize| !piles.iter().any(|pile| (pile.start..=pile.end).contains(&at));
+        let stops = barriers::stops(view, strip.across, on.clone());
+        // A face of racks may be in line with one of goods.
+        let walls = barriers::beyond_a_side(view, strip.across, beyond(strip.across), on.clone());
         view.blocked_where(on.clone(), low, high, |share| share > GOODS).any()
-            && !barriers::stops(view, strip.across, on.clone()).iter().any(stops)
-            && !barriers::beyond_a_side(view, strip.across, beyond(strip.across), on.clone()).any()
-            && (strip.width() > DOOR || !barriers::doors(view, beyond(strip.across), on.clone()).any())
+            && !stops.into_iter().any(is_beside)
+            && !walls.runs(0..on.len(), true).any(|wall| is_beside(on.start + wall.start))
+            && !barriers::doors(view, beyond(strip.across), on.clone()).any()
     }
 
     /// Over which of some columns half of it is not free.
@@ -211,9 +212,9 @@ impl Ahead<'_> {
         let lanes = ((strip.width() - LANE.0) / view.cell).max(0.0) as usize;
         let narrow = |run: Range<usize>| {
             let at = |n: usize| columns.start + n;
-            let most = half.runs(run.clone(), true).fold(run.end..run.start, |most, half| {
-                most.start.min(half.start)..most.end.max(half.end)
-            });
+            let most = half
+                .runs(run.clone(), true)
+                .fold(run.end..run.start, |most, half| most.start.min(half.start)..most.end.max(half.end));
             let on = at(most.start)..at(most.end);
             let is_free = |n: usize| {
                 let low = strip.across[0] + n as f64 * view.cell;
@@ -258,15 +259,16 @@ impl Ahead<'_> {
         found
     }
 
-    /// The columns beyond its end up to where it is closed, and not by goods, or another strip of its direction lies there.
-    fn open(&self) -> Range<usize> {
+    /// The columns beyond its end up to where it is closed, be it by goods that one gets past or not, or another strip of its direction
+    /// lies there.
+    fn open(&self, past_piles: bool) -> Range<usize> {
         let (strip, view) = (self.strip(), self.view());
         let end = strip.along[self.side];
         let mut beyond = sorted([end, end + shut::sign(self.side) * FARTHEST]);
         for m in self.placed[strip.direction].touching(beyond, strip.across) {
             let other = &self.strips[m];
             // What goods leave of it is no other.
-            let is_lane = other.width() < ALIKE * strip.width() && other.is_short();
+            let is_lane = past_piles && other.width() < ALIKE * strip.width() && other.is_short();
             let is_there = overlap(other.across, strip.across) > 0.0 && overlap(other.along, beyond) > 0.0;
             if m != self.n && is_there && !is_lane {
                 let begins = other.along[1 - self.side];
@@ -274,12 +276,18 @@ impl Ahead<'_> {
             }
         }
         let [from, to] = beyond.map(|u| view.border(u).min(view.size[0]));
-        let closing = self.narrows(&(from..to)).into_iter().filter(|narrow| narrow.closes && !narrow.is_pile);
-        let mut walls = closing.map(|narrow| narrow.on);
-        if self.side == 0 {
-            walls.next_back().map_or(from, |run| run.end)..to
+        let closed: Vec<Range<usize>> = if past_piles {
+            let closing = self.narrows(&(from..to)).into_iter().filter(|narrow| narrow.closes && !narrow.is_pile);
+            closing.map(|narrow| narrow.on).collect()
         } else {
-            from..walls.next().map_or(to, |run| run.start)
+            let [low, high] = shut::inner(strip);
+            let closed = view.some_closed(from..to, low, high);
+            closed.runs(0..to.saturating_sub(from), true).map(|run| from + run.start..from + run.end).collect()
+        };
+        if self.side == 0 {
+            closed.last().map_or(from, |run| run.end)..to
+        } else {
+            from..closed.first().map_or(to, |run| run.start)
         }
     }
 

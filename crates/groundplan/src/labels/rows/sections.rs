@@ -15,6 +15,7 @@ use crate::labels::view::turned::Turned;
 use crate::labels::ways::step::{BAYS, Section};
 use std::cell::OnceCell;
 use std::mem;
+use std::ops::Range;
 
 /// A way is so wide, metres.
 pub const WIDTH: (f64, f64) = (1.6, 8.0);
@@ -38,7 +39,7 @@ const BETWEEN: f64 = 0.25;
 pub const LEFT: f64 = 0.25;
 /// Racks end so near to a side, metres, beside goods that leave so much of what lies between.
 const AT_SIDE: f64 = 0.5;
-const BESIDE_GOODS: f64 = 0.5;
+const BESIDE_GOODS: f64 = 0.4;
 /// A way is free but for this share, metre for metre: one walks round what was left in it.
 const CLUTTER: f64 = 0.2;
 /// Two posts across from each other, be they off by the map's error, take no more along a row, metres.
@@ -449,11 +450,9 @@ impl<'a> Columns<'a> {
     }
 
     /// True when something stands in most of the columns of a stretch, be it ever so little: a wall joins what is beside it.
-    pub fn is_walled(&self, [from, to]: [f64; 2]) -> bool {
-        let columns = self.view.column(from)..self.view.column(to);
-        let [low, high] = wider(self.row.across, FACE);
-        let stands = self.view.some_occupied(columns, low, high);
-        stands.iter().filter(|share| **share > 0.0).count() as f64 > TAKEN * stands.len() as f64
+    pub fn is_walled(&self, ends: [f64; 2]) -> bool {
+        let [from, to] = ends.map(|u| self.view.column(u));
+        is_walled(self.view, self.row, from..to)
     }
 
     fn is_way(&self, from: usize, to: usize, least: f64) -> bool {
@@ -481,6 +480,13 @@ impl<'a> Columns<'a> {
     pub fn is_as_bays(&self, [from, to]: [f64; 2]) -> bool {
         self.pitch.is_some_and(|pitch| is_as_bays(to - from, pitch))
     }
+}
+
+/// True when something stands in most of some columns of a row.
+pub fn is_walled(view: &Turned, row: &Row, columns: Range<usize>) -> bool {
+    let [low, high] = wider(row.across, FACE);
+    let stands = view.some_occupied(columns, low, high);
+    stands.iter().filter(|share| **share > 0.0).count() as f64 > TAKEN * stands.len() as f64
 }
 
 /// True when what is so wide is as wide as a bay, or as some beside one another.

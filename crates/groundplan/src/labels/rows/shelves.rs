@@ -1,6 +1,6 @@
 //! What of a row of racks is open, by its columns, and where something stands along its faces.
 
-use super::sections::{FACE, LEFT};
+use super::sections::{self, FACE, LEFT};
 use crate::labels::rows::Row;
 use crate::labels::view::runs::{Run, common, length, outside, runs};
 use crate::labels::view::turned::Turned;
@@ -47,6 +47,13 @@ impl Shelves {
     /// Where it is open from aisle to aisle.
     pub fn open(&self) -> Vec<Run> {
         common(&self.halves[0], &self.halves[1])
+    }
+
+    /// The same where no wall runs along it.
+    pub fn passable(&self, view: &Turned) -> Vec<Run> {
+        let first = self.columns.start;
+        let is_walled = |&(from, to): &Run| sections::is_walled(view, &self.row, first + from..first + to);
+        self.open().into_iter().filter(|run| !is_walled(run)).collect()
     }
 
     /// How long it is from the first to the last place at which something of it was seen, metres.

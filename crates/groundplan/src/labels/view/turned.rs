@@ -142,7 +142,10 @@ impl Turned {
     fn turned_from_another(mut self, scene: &Scene) -> Self {
         let frame = &scene.grid.frame;
         let sample = self.cell / f64::from(self.samples);
-        let is_whole = self.axes.lean == 0.0 && !self.is_fine(frame) && !are_many(self.size) && !are_many([self.size[1], self.size[0]]);
+        let is_whole = self.axes.lean == 0.0
+            && !self.is_fine(frame)
+            && !are_many(self.size)
+            && !are_many([self.size[1], self.size[0]]);
         let Some(quarter) = Quarter::of(scene.directions, frame, sample, self.direction).filter(|_| is_whole) else {
             return self;
         };

@@ -3,6 +3,7 @@
 
 use crate::ends::holds;
 use crate::labels::rows::Row;
+use crate::labels::rows::sections::is_as_bays;
 use crate::labels::rows::shelves::{ENDS, Elsewhere, Shelves};
 use crate::labels::view::runs::Run;
 use crate::labels::view::turned::Turned;
@@ -19,8 +20,13 @@ const ROWS: usize = 2;
 const UNLIKELY: f64 = 0.01;
 /// The same where each of the rows is open at as many, which chance seldom makes.
 const UNLIKELY_IN_FULL: f64 = 0.1;
-/// Where not each of the rows is open, chance makes fewer such places than this in all of them.
+/// Where not each of the rows is open, chance makes fewer such places than this in all of them; or fewer than this share of those that
+/// are open, where no more than so many of these are as wide as posts leave of one bay or several.
 const EXPECTED: f64 = 0.1;
+const FALSE: f64 = 0.1;
+const AS_BAYS: f64 = 0.5;
+/// Posts leave so much less than the bays are long, metres.
+const POSTS: [f64; 2] = [0.0, 0.3];
 /// Ways as wide as bays are no more than so many of a row's places, or so many where more than so many lead through each row: where
 /// both of two racks are empty at more, they are as one. Where both are at more than so many nothing but legs was seen, and these tell.
 const BAYS: [f64; 2] = [0.2, 0.8];
@@ -39,14 +45,17 @@ pub fn is_double(row: &Row) -> bool {
 
 /// True when several of some rows side by side that are of two racks are open at places of a width, and all are at as many as
 /// they would hardly be by chance if each rack were empty where it is, whatever the other is: where one is open nowhere,
-/// hardly any such place is expected at all. Where no rack is empty alone both may be emptied together, bay by bay.
+/// hardly any such place is expected at all. Where no rack is empty alone both may be emptied together, bay by bay. And if that is
+/// asked for no more than some of the places may be as wide as bays are.
 pub fn are_open<'a>(
     view: &Turned,
     rows: impl Iterator<Item = &'a Shelves>,
     width: f64,
-    may_be_bay: impl FnOnce() -> bool,
+    pitch: Option<f64>,
+    are_no_bays: bool,
 ) -> bool {
     let (mut half_open, mut open, mut open_rows, mut places) = (0, 0, 0, 0.0);
+    let (mut widths, mut bays) = (0, 0);
     let is_long = |shelves: &&Shelves| is_double(&shelves.row) && shelves.row.length() >= LONG * width;
     let rows: Vec<&Shelves> = rows.filter(is_long).collect();
     if rows.len() < ROWS {
@@ -59,19 +68,37 @@ pub fn are_open<'a>(
             let within = runs.iter().filter(|run| !shelves.is_end(**run));
             within.map(|(from, to)| (to - from) / least).sum::<usize>()
         };
-        let own = as_wide(&shelves.open());
+        let passable = shelves.passable(view);
+        let own = as_wide(&passable);
+        let wide = passable.iter().filter(|run| run.1 - run.0 >= least && !shelves.is_end(**run));
+        for (from, to) in wide {
+            widths += 1;
+            bays += usize::from(pitch.is_none_or(|pitch| is_left_by_posts((to - from) as f64 * view.cell, pitch)));
+        }
         open_rows += usize::from(own > 0);
         open += own;
         half_open += shelves.halves.iter().map(|half| as_wide(half).saturating_sub(own)).sum::<usize>();
         places += shelves.seen(view) / width;
     }
     let expected = by_chance(open, half_open as f64, places);
-    let may_be_bay = may_be_bay();
+    let may_be_bay = pitch.is_some_and(|pitch| is_as_bays(width, pitch));
+    // Both racks may be emptied together, bay by bay: what is as wide as posts leave is then most of what is open.
+    let are_few = bays as f64 <= AS_BAYS * widths as f64;
     let share = if open > MANY.1 * count { MANY.0 } else { BAYS[0] };
     open_rows >= ROWS
+        && (are_few || !are_no_bays)
         && !(may_be_bay && half_open > 0 && holds([share, BAYS[1]], open as f64 / places))
         && likely(open, expected) < UNLIKELY
-        && (open_rows == count || open >= SEVERAL && expected < EXPECTED && (half_open > 0 || !may_be_bay))
+        && (open_rows == count
+            || open >= SEVERAL
+                && (expected < EXPECTED || are_few && expected < FALSE * open as f64)
+                && (half_open > 0 || !may_be_bay))
+}
+
+/// True when something is as wide as posts leave of a bay, or of some beside one another.
+fn is_left_by_posts(width: f64, pitch: f64) -> bool {
+    let bays = ((width + POSTS[1] / 2.0) / pitch).round().max(1.0);
+    holds(POSTS, bays * pitch - width)
 }
 
 /// Rows side by side but for some places at which they are open.
