@@ -64,6 +64,17 @@ class Canvas:
         return np.ascontiguousarray(self.rows[::-1])
 
 
+def sheared(picture: Picture, degrees: float) -> Picture:
+    """A picture of which what ran down the columns leans by an angle, and rows stay as they are."""
+    height, width = picture.shape
+    slope = np.tan(np.radians(degrees))
+    off = [round(slope * row - min(0.0, slope) * height) for row in range(height)]
+    leaning = np.full((height, width + max(off) + 1), UNKNOWN, np.uint8)
+    for row, first in enumerate(off):
+        leaning[row, first : first + width] = picture[row]
+    return leaning
+
+
 def walled(width: int, depth: int) -> Picture:
     """Free space of so many pixels within walls two pixels thick, 18 of the unknown around."""
     picture = np.full((depth + 40, width + 40), UNKNOWN, np.uint8)

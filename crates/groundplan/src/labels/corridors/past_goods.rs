@@ -44,16 +44,21 @@ const CLUTTER: f64 = 0.1;
 /// The strips, each as far on as racks stand along both its sides and one gets past what stands between, up to another way;
 /// pieces that come to meet are one, no narrower than the least that a corridor is.
 pub fn led_on(views: &[Turned], strips: Vec<Strip>, least: f64) -> Vec<Strip> {
-    longer(views, strips, least, |ahead| ahead.end())
+    longer(views, strips, least, None)
 }
 
-fn longer(views: &[Turned], mut strips: Vec<Strip>, least: f64, end: impl Fn(&Ahead) -> Option<f64>) -> Vec<Strip> {
+/// Of aisles, where these are given, each past goods at its end alone.
+fn longer(views: &[Turned], mut strips: Vec<Strip>, least: f64, aisles: Option<&BTreeSet<usize>>) -> Vec<Strip> {
     let mut placed = placed(views, strips.iter().map(Strip::place));
     let mut is_longer = false;
     for n in (0..strips.len()).filter(|&n| !strips[n].bays && !strips[n].is_short()).collect::<Vec<_>>() {
         for side in [0, 1] {
             let ahead = Ahead { views, strips: &strips, placed: &placed, n, side };
-            let Some(end) = end(&ahead) else { continue };
+            let end = match aisles {
+                None => ahead.end(),
+                Some(aisles) => aisles.get(&n).and_then(|_| ahead.past_goods_at_end()),
+            };
+            let Some(end) = end else { continue };
             (strips[n].along[side], strips[n].held[side]) = (end, UNTOLD[side]);
             placed[strips[n].direction].add(n, strips[n].along, strips[n].across);
             is_longer = true;
@@ -73,8 +78,7 @@ struct Narrow {
 /// narrows a way across rows may be what is left of the next one.
 pub fn past_piles(views: &[Turned], strips: &[Strip], rows: &[Row], least: f64) -> Option<Vec<Strip>> {
     let aisles: BTreeSet<usize> = rows.iter().filter_map(|row| row.between).flatten().collect();
-    let end = |ahead: &Ahead| if aisles.contains(&ahead.n) { ahead.past_goods_at_end() } else { None };
-    let longer = longer(views, strips.to_vec(), least, end);
+    let longer = longer(views, strips.to_vec(), least, Some(&aisles));
     (longer != strips).then_some(longer)
 }
 

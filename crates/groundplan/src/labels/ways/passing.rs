@@ -94,7 +94,7 @@ impl Place<'_> {
 
     /// True when the rows that something passes through are of two racks each, and with those side by side open more often than by
     /// chance, as wide or wider, at places of which few are as wide as bays.
-    pub fn is_between_racks(&self, strips: &[Strip], own: &Passing, width: f64) -> bool {
+    fn is_between_racks(&self, strips: &[Strip], own: &Passing, width: f64) -> bool {
         let part = self.first_of(own).map(|first| self.rows_with(first)).unwrap_or_default();
         let rows = || part.iter().map(|&row| self.shelves(row));
         let are_open = |width: f64| seldom::are_open(self.views[0], rows(), width, self.pitch_of(own), true);
