@@ -189,17 +189,18 @@ impl Ahead<'_> {
     fn gets_past_goods(&self, on: &Range<usize>, past_piles: bool) -> bool {
         let (strip, view) = (self.strip(), self.view());
         let [low, high] = wider(strip.across, -SAME);
+        if !view.blocked_where(on.clone(), low, high, |share| share > GOODS).any() {
+            return false;
+        }
         // One gets past what leaves a lane.
         let narrows = if past_piles { self.narrows(on) } else { Vec::new() };
-        let piles = narrows.into_iter().filter(|narrow| narrow.is_pile).map(|narrow| narrow.on);
-        let piles: Vec<Range<usize>> = piles.collect();
+        let piles: Vec<Range<usize>> =
+            narrows.into_iter().filter(|narrow| narrow.is_pile).map(|narrow| narrow.on).collect();
         let is_beside = |at: usize| !piles.iter().any(|pile| (pile.start..=pile.end).contains(&at));
-        let stops = barriers::stops(view, strip.across, on.clone());
         // A face of racks may be in line with one of goods.
-        let walls = barriers::beyond_a_side(view, strip.across, beyond(strip.across), on.clone());
-        view.blocked_where(on.clone(), low, high, |share| share > GOODS).any()
-            && !stops.into_iter().any(is_beside)
-            && !walls.runs(0..on.len(), true).any(|wall| is_beside(on.start + wall.start))
+        let walls = || barriers::beyond_a_side(view, strip.across, beyond(strip.across), on.clone());
+        !barriers::stops(view, strip.across, on.clone()).into_iter().any(is_beside)
+            && !walls().runs(0..on.len(), true).any(|wall| is_beside(on.start + wall.start))
             && !barriers::doors(view, beyond(strip.across), on.clone()).any()
     }
 
@@ -208,11 +209,11 @@ impl Ahead<'_> {
         let (strip, view) = (self.strip(), self.view());
         let [low, high] = shut::inner(strip);
         let closed = view.some_closed(columns.clone(), low, high);
-        let [some, mut half] =
-            [GOODS, HALF].map(|least| view.blocked_where(columns.clone(), low, high, |share| share > least));
-        half |= &closed;
-        let mut narrowed = closed.clone();
-        narrowed |= &some;
+        let [narrowed, half] = [GOODS, HALF].map(|least| {
+            let mut taken = view.blocked_where(columns.clone(), low, high, |share| share > least);
+            taken |= &closed;
+            taken
+        });
         let lanes = ((strip.width() - LANE.0) / view.cell).max(0.0) as usize;
         let narrow = |run: Range<usize>| {
             let at = |n: usize| columns.start + n;
@@ -280,18 +281,21 @@ impl Ahead<'_> {
             }
         }
         let [from, to] = beyond.map(|u| view.border(u).min(view.size[0]));
-        let closed: Vec<Range<usize>> = if past_piles {
-            let closing = self.narrows(&(from..to)).into_iter().filter(|narrow| narrow.closes && !narrow.is_pile);
-            closing.map(|narrow| narrow.on).collect()
-        } else {
-            let [low, high] = shut::inner(strip);
-            let closed = view.some_closed(from..to, low, high);
-            closed.runs(0..to.saturating_sub(from), true).map(|run| from + run.start..from + run.end).collect()
-        };
+        if past_piles {
+            let narrows = self.narrows(&(from..to)).into_iter();
+            let mut walls = narrows.filter(|narrow| narrow.closes && !narrow.is_pile).map(|narrow| narrow.on);
+            return if self.side == 0 {
+                walls.next_back().map_or(from, |wall| wall.end)..to
+            } else {
+                from..walls.next().map_or(to, |wall| wall.start)
+            };
+        }
+        let [low, high] = shut::inner(strip);
+        let is_closed = |c: &usize| view.is_closed(*c, low, high);
         if self.side == 0 {
-            closed.last().map_or(from, |run| run.end)..to
+            (from..to).rev().find(is_closed).map_or(from, |c| c + 1)..to
         } else {
-            from..closed.first().map_or(to, |run| run.start)
+            from..(from..to).find(is_closed).unwrap_or(to)
         }
     }
 

@@ -309,9 +309,8 @@ impl<'a> Columns<'a> {
 
     /// True when racks end at both of two sides, and goods that stand between leave most of it free.
     pub fn is_free_beside_goods(&self, sides: [f64; 2]) -> bool {
-        let column = |u: f64| (((u - self.row.along[0]) / self.view.cell).max(0.0) as usize).min(self.blocked.len());
         let ends = |side: f64| {
-            let [from, to] = wider([side; 2], AT_SIDE).map(column);
+            let [from, to] = wider([side; 2], AT_SIDE).map(|u| self.column(u));
             (from..to).any(|n| self.blocked[n] >= TAKEN || self.closing(n) == Closing::Whole)
         };
         let (first, last) = self.inner(sides);
@@ -365,8 +364,12 @@ impl<'a> Columns<'a> {
 
     /// The columns between two sides, without what stands at these.
     fn inner(&self, sides: [f64; 2]) -> (usize, usize) {
-        let column = |u: f64| (((u - self.row.along[0]) / self.view.cell).max(0.0) as usize).min(self.blocked.len());
-        (column(sides[0] + SIDE), column(sides[1] - SIDE))
+        (self.column(sides[0] + SIDE), self.column(sides[1] - SIDE))
+    }
+
+    /// The column that holds a place along the row's middle, the first or one beyond the last when it lies outside.
+    fn column(&self, u: f64) -> usize {
+        (((u - self.row.along[0]) / self.view.cell).max(0.0) as usize).min(self.blocked.len())
     }
 
     /// Share of the columns that is not free.

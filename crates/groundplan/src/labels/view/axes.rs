@@ -2,7 +2,6 @@
 //! rectangle, places along lean with that one: what runs along the other then lies at one place, and what is asked of columns
 //! of a view holds there as it does in a rectangle.
 
-use super::turned::rectangle;
 use crate::directions::Directions;
 
 /// Two directions are square to each other but for an angle of this cosine: what drift has bent by less is a rectangle still.
@@ -49,7 +48,7 @@ impl Axes {
 
     /// The corners in the map frame of what lies between places, counter-clockwise.
     pub fn rectangle(self, along: [f64; 2], across: [f64; 2]) -> [[f64; 2]; 4] {
-        rectangle(along, across).map(|corner| self.to_map(corner))
+        [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[u, v]| self.to_map([along[u], across[v]]))
     }
 }
 
@@ -62,4 +61,34 @@ fn crossing(angles: &[f64], direction: usize) -> Option<usize> {
 /// Of an angle.
 pub fn cotangent(angle: f64) -> f64 {
     libm::cos(angle) / libm::sin(angle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axes(angles: &[f64]) -> Vec<Axes> {
+        let directions = Directions { angles: angles.to_vec(), ..Directions::default() };
+        (0..angles.len()).map(|direction| Axes::of(&directions, direction)).collect()
+    }
+
+    #[test]
+    fn what_runs_along_the_one_direction_lies_at_one_place_along_the_other() {
+        for askew in [1.3_f64, 1.5, 1.64, 1.85] {
+            let [one, two] = axes(&[0.2, 0.2 + askew])[..] else { unreachable!() };
+            for (one, two) in [(one, two), (two, one)] {
+                let [from, to] = [-7.0, 12.0].map(|u| one.place(two.to_map([u, 3.0]))[0]);
+                assert!((from - to).abs() < 1e-9, "{askew}");
+                let [u, v] = one.place(one.to_map([5.0, -2.0]));
+                assert!((u - 5.0).abs() < 1e-9 && (v + 2.0).abs() < 1e-9, "{askew}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_leans_with_what_is_square_or_crossed_more_squarely_or_far_from_square() {
+        for angles in [&[0.0, 1.57][..], &[0.0, 1.3, 1.57], &[0.0, 0.7]] {
+            assert!(axes(angles).iter().all(|axes| axes.lean == 0.0), "{angles:?}");
+        }
+    }
 }

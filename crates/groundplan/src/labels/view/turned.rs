@@ -381,8 +381,3 @@ pub fn least_sine(views: &[Turned], least: f64) -> f64 {
     let sines = views.iter().flat_map(|one| views.iter().map(|other| one.sine(other)));
     sines.filter(|sine| *sine >= least).fold(1.0, f64::min)
 }
-
-/// The corners of a rectangle of places, counter-clockwise.
-pub fn rectangle(along: [f64; 2], across: [f64; 2]) -> [[f64; 2]; 4] {
-    [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[u, v]| [along[u], across[v]])
-}

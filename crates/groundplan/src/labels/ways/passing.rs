@@ -18,8 +18,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// What leads through a row of two racks is no narrower than this share of the aisles beside it.
 const NARROWER: f64 = family::LED_TO;
 
-/// What is wider than what chance seldom makes so often, it makes less often still: as wide or by so much narrower.
-const NARROWED: [f64; 2] = [1.0, 0.9];
+/// What is wider than what chance seldom makes so often, it makes less often still: places so many times as wide tell, where few of
+/// them are as wide as bays.
+const NARROWED: f64 = 0.9;
 
 /// What some of the goods leave is as wide as they are but for so much, metres.
 const BETWEEN_GOODS: f64 = 0.2;
@@ -74,8 +75,7 @@ impl Place<'_> {
         let Some(first) = self.first_of(own) else { return false };
         let part = self.rows_with(first);
         let rows = || part.iter().map(|&row| self.shelves(row));
-        let is_as_bays = || self.is_as_bays(own, width);
-        let may_be_bay = || is_as_bays() || !self.lead_through_all(&part).is_empty();
+        let may_be_bay = || self.is_as_bays(own, width) || !self.lead_through_all(&part).is_empty();
         let is_full = || {
             let rest = Rest::new(self.views[0], rows(), width);
             rest.is_full() || rest.is_solid() && !may_be_bay()
@@ -85,21 +85,13 @@ impl Place<'_> {
                 && self.count_within(&part) >= SEVERAL
                 && closed::is_way(self, strips, own, width)
         };
+        let pitch = self.pitch_of(own);
+        let are_open =
+            |width: f64, are_no_bays: bool| seldom::are_open(self.views[0], rows(), width, pitch, are_no_bays);
         own.is_within && (is_full() || is_as_no_goods())
             || self.are_double(own)
                 && self.is_as_aisles(strips, own, width)
-                && seldom::are_open(self.views[0], rows(), width, self.pitch_of(own), false)
-            || self.is_between_racks(strips, own, width)
-    }
-
-    /// True when the rows that something passes through are of two racks each, and with those side by side open more often than by
-    /// chance, as wide or wider, at places of which few are as wide as bays.
-    fn is_between_racks(&self, strips: &[Strip], own: &Passing, width: f64) -> bool {
-        let part = self.first_of(own).map(|first| self.rows_with(first)).unwrap_or_default();
-        let rows = || part.iter().map(|&row| self.shelves(row));
-        let are_open = |width: f64| seldom::are_open(self.views[0], rows(), width, self.pitch_of(own), true);
-        let is_open = || NARROWED.iter().any(|share| are_open(share * width));
-        self.are_double(own) && self.is_as_aisles(strips, own, width) && is_open()
+                && (are_open(width, false) || are_open(NARROWED * width, true))
     }
 
     /// True when goods are told along the rows that something passes through, and no number of them leaves such a width.
