@@ -212,16 +212,31 @@ impl Sum for u32 {
 /// The lowest and the highest of some numbers.
 fn ends(values: &[f32]) -> [f64; 2] {
     let (mut low, mut high) = ([f32::INFINITY; CHUNK], [f32::NEG_INFINITY; CHUNK]);
-    let mut look = |values: &[f32]| {
-        for ((value, low), high) in values.iter().zip(&mut low).zip(&mut high) {
+    let chunks = values.chunks_exact(CHUNK);
+    let rest = chunks.remainder();
+    for chunk in chunks {
+        for ((value, low), high) in chunk.iter().zip(&mut low).zip(&mut high) {
             *low = if value < low { *value } else { *low };
             *high = if value > high { *value } else { *high };
         }
-    };
-    let chunks = values.chunks_exact(CHUNK);
-    let rest = chunks.remainder();
-    chunks.for_each(&mut look);
-    look(rest);
-    let (low, high) = (low.into_iter().reduce(f32::min), high.into_iter().reduce(f32::max));
+    }
+    // One loop over the chunks and what is left loses some of this where it is compiled for AVX2 (rustc 1.95).
+    let low = low.iter().chain(rest).copied().reduce(f32::min);
+    let high = high.iter().chain(rest).copied().reduce(f32::max);
     [low, high].map(|end| f64::from(end.unwrap_or_default()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_lie_within_their_lowest_and_highest_however_many_they_are() {
+        for count in 1..100 {
+            let values: Vec<f32> = (0..count).map(|n| (n * 37 % 101) as f32).collect();
+            let naive =
+                [f32::min, f32::max].map(|one| f64::from(values.iter().copied().reduce(one).unwrap_or_default()));
+            assert_eq!(ends(&values), naive, "of {count}");
+        }
+    }
 }
