@@ -178,12 +178,14 @@ impl Place<'_> {
         parts
     }
 
-    /// The rows of the part of the place that a row is of: those that lie one beside another, walls between halls left out.
+    /// The rows of the part of the place that a row is of: those that face one another across an aisle, walls between halls left out.
+    /// Along an aisle that leads from one hall into the next there are rows of both.
     pub fn rows_with(&self, row: usize) -> BTreeSet<usize> {
         let (mut found, mut next) = (BTreeSet::from([row]), vec![row]);
         while let Some(n) = next.pop() {
             let beside = self.rows[n].1.into_iter().flat_map(|aisle| self.beside[aisle].iter().flatten().copied());
-            next.extend(beside.filter(|&m| !self.walls[m] && found.insert(m)));
+            let face = |m: usize| overlap(self.rows[n].0.along, self.rows[m].0.along) > 0.0;
+            next.extend(beside.filter(|&m| !self.walls[m] && face(m) && found.insert(m)));
         }
         found
     }

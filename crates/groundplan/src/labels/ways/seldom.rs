@@ -171,8 +171,11 @@ impl<'a> Rest<'a> {
     }
 
     fn are_as_many(&self) -> bool {
-        let [least, most] = self.rows.iter().fold([usize::MAX, 0], |[a, b], row| [a.min(row.open), b.max(row.open)]);
-        let are_even = || dealt_so_evenly(self.open(), self.rows.len()) < UNLIKELY_IN_FULL;
+        // In pieces that are too short for any there is none.
+        let long = self.rows.iter().filter(|row| row.shelves.count() as f64 >= LONG * self.width);
+        let [least, most, count] =
+            long.fold([usize::MAX, 0, 0], |[a, b, count], row| [a.min(row.open), b.max(row.open), count + 1]);
+        let are_even = || dealt_so_evenly(self.open(), count) < UNLIKELY_IN_FULL;
         least == most || least > 0 && most - least == 1 && are_even()
     }
 }
