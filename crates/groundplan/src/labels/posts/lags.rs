@@ -62,14 +62,19 @@ impl Counts {
 
     /// The pitch, metres, of those of the lags that are looked at that may be one.
     pub fn pitch(&self, may_be: &[bool]) -> Option<f64> {
+        self.clear_pitch(may_be, CONTRAST).map(|(pitch, _)| pitch)
+    }
+
+    /// The same where it stands out of the other lags by a factor, and by which one it does.
+    pub fn clear_pitch(&self, may_be: &[bool], contrast: f64) -> Option<(f64, f64)> {
         let all = self.all();
         let clear = |n: usize| clear(all[n]);
         let found: Vec<f64> = (0..all.len()).map(|n| if may_be[n] { clear(n) } else { 0.0 }).collect();
         let top = |n: usize| found[n.saturating_sub(TOP)..].iter().take(2 * TOP + 1).all(|other| *other <= found[n]);
-        let tops = (0..found.len()).filter(|&n| found[n] >= CONTRAST && top(n));
+        let tops = (0..found.len()).filter(|&n| found[n] >= contrast && top(n));
         let tops: Vec<(usize, f64)> = tops.map(|n| (FIRST + n, all[n][0].0)).collect();
         let lag = one_bay(shortest(&tops)?, |lag| clear(lag - FIRST));
-        Some(between_steps(&self.pairs, lag) * STEP)
+        Some((between_steps(&self.pairs, lag) * STEP, clear(lag - FIRST)))
     }
 }
 
@@ -106,6 +111,14 @@ impl Parts {
 
     pub fn all(&self) -> Counts {
         Counts::new(sum(self.0.values()))
+    }
+
+    /// All pairs of each part and of those beside it.
+    pub fn about_each(&self) -> impl Iterator<Item = Counts> {
+        self.0.keys().map(|[u, v]| {
+            let about = (u - 1..=u + 1).flat_map(|u| self.0.range([u, v - 1]..=[u, v + 1]));
+            Counts::new(sum(about.map(|(_, counts)| counts)))
+        })
     }
 }
 

@@ -27,6 +27,8 @@ const ALONG: [f64; 2] = [0.15, 0.025];
 const ABOUT: f64 = 4.0;
 /// A pitch recurs about a row where more than chance are so far apart by as many of its deviations.
 const RECURS: f64 = 2.0;
+/// What recurs in some part of the view and not in all of it stands out there by this factor.
+const LOCAL: f64 = 12.0;
 /// A pitch is of so many goods at most, which recur so many times as clearly, in pieces of lines of so many pitches, and by more
 /// than so many deviations of what chance makes in as many.
 const MOST_GOODS: usize = 4;
@@ -85,7 +87,8 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<Pitch> {
     let counts = parts.all();
     let all = counts.all();
     // Where nothing recurs it need not be asked whether it is along faces.
-    if all.iter().all(|lag| clear(*lag) < CONTRAST) {
+    let recurs = |counts: &Counts, contrast: f64| counts.all().iter().any(|lag| clear(*lag) >= contrast);
+    if !recurs(&counts, CONTRAST) && !parts.about_each().any(|counts| recurs(&counts, LOCAL)) {
         return None;
     }
     let of_line = |n: usize| {
@@ -102,7 +105,12 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<Pitch> {
     let is_along =
         |n: usize| (0..2).all(|twice| faces.excess(twice + 1, FIRST + n).0 >= ALONG[twice] * all[n][twice].0);
     let along: Vec<bool> = (0..all.len()).map(is_along).collect();
-    let common = counts.pitch(&along)?;
+    // Halls whose bays differ may have none in common.
+    let clearest = || {
+        let of_each = parts.about_each().filter_map(|counts| counts.clear_pitch(&along, LOCAL));
+        of_each.max_by(|one, two| one.1.total_cmp(&two.1)).map(|(pitch, _)| pitch)
+    };
+    let common = counts.pitch(&along).or_else(clearest)?;
     Some(Pitch { common, start: view.start, parts, along, goods: goods(&lines, common) })
 }
 

@@ -195,12 +195,12 @@ fn crossed(
             let times = if view.pitch.is_some() && other.pitch.is_none() { LONGER } else { 1.0 };
             let judged = near.into_iter().filter(|&n| strips[n].length() < times * shorter);
             // Where no bays are known, what is wider is no bay.
+            let pitch = if view.pitch.is_some() { view.pitch_of(row) } else { common };
             let is_narrow = |n: usize| is_narrow(strips, &placed, n, aisles);
-            let judged: Vec<usize> = judged.filter(|&n| common.is_some() || is_narrow(n)).collect();
+            let judged: Vec<usize> = judged.filter(|&n| pitch.is_some() || is_narrow(n)).collect();
             if judged.is_empty() {
                 return Vec::new();
             }
-            let pitch = if view.pitch.is_some() { view.pitch_of(row) } else { common };
             let columns = Columns::new(look, &evidence.grid.frame, [view, other], row, pitch);
             let least = sections::least_width(aisles.into_iter().map(Strip::width));
             let (ways, open) = (columns.ways(least), columns.open());
