@@ -17,6 +17,8 @@ pub const SQUARE: (f64, f64) = (0.3, 0.015);
 /// Two weak ones that are square to one another, to so many degrees, are a wing's when each has this share: what is no
 /// wall lines up along one angle, if at all.
 pub const WING: (f64, f64) = (1.0, 0.03);
+/// Or one of them has this share, and the other this one, be it by chance.
+const LONG_WING: (f64, f64) = (0.1, 0.015);
 /// And a wall of so many metres: what is beveled has shorter ones along two such angles.
 const WALL: f64 = 3.5;
 
@@ -70,16 +72,19 @@ pub fn seconds(weak: &[Candidate], strong: &[Candidate]) -> Vec<Candidate> {
     if is_skewed { Vec::new() } else { found }
 }
 
-/// Those of a wing that is small beside the whole: none of them is known by a strong one, but they are by one another. What
-/// is so near to a strong one that its pixels speak for that one too is a part of its hall that the map has turned.
+/// Those of a wing that is small beside the whole: they are not known by strong ones, but by one another, two that are square
+/// of which both are more than chance makes, or one that is long. What is so near to a strong one that its pixels speak for that one too is a part of its hall that the map has turned.
 pub fn wings(weak: &[Candidate], strong: &[Candidate], strongest: f64, parameters: &Parameters) -> Vec<Candidate> {
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
-    let may_be = |f: &&Candidate| {
-        let is_known = strong.iter().any(|to| is_of(to, f.angle, tolerance));
-        f.metres >= WING.1 * strongest && f.longest >= WALL && f.exceeds_chance_beside(strong) && !is_known
+    let has = |f: &Candidate, share: f64| f.metres >= share * strongest && f.longest >= WALL;
+    let is_known = |f: &Candidate| strong.iter().any(|to| is_of(to, f.angle, tolerance));
+    let is_more = |f: &Candidate, share: f64| has(f, share) && f.exceeds_chance_beside(strong) && !is_known(f);
+    let is_long_of = |f: &Candidate, short: &Candidate| is_more(f, LONG_WING.0) && has(short, LONG_WING.1);
+    let is_of_wing = |f: &Candidate, other: &Candidate| {
+        is_square(other.angle, f, WING.0)
+            && (is_more(f, WING.1) && is_more(other, WING.1) || is_long_of(f, other) || is_long_of(other, f))
     };
-    let own: Vec<Candidate> = weak.iter().filter(may_be).copied().collect();
-    own.iter().filter(|f| own.iter().any(|other| is_square(other.angle, f, WING.0))).copied().collect()
+    weak.iter().filter(|f| weak.iter().any(|other| is_of_wing(f, other))).copied().collect()
 }
 
 /// Those that have no other square to them, be the map bent a little.

@@ -62,19 +62,30 @@ impl Counts {
 
     /// The pitch, metres, of those of the lags that are looked at that may be one.
     pub fn pitch(&self, may_be: &[bool]) -> Option<f64> {
-        self.clear_pitch(may_be, CONTRAST).map(|(pitch, _)| pitch)
+        self.lag(may_be, CONTRAST).map(|lag| self.about(lag))
     }
 
-    /// The same where it stands out of the other lags by a factor, and by which one it does.
+    /// The same if it stands out of the other lags by a factor, and not only two of it do; and by which one it does.
     pub fn clear_pitch(&self, may_be: &[bool], contrast: f64) -> Option<(f64, f64)> {
+        let lag = self.lag(may_be, contrast)?;
+        let clear = clear([1, 2].map(|times| self.excess(times, lag)));
+        (clear >= contrast).then(|| (self.about(lag), clear))
+    }
+
+    /// The lag of one bay among those that may be one and stand out of the others by a factor.
+    fn lag(&self, may_be: &[bool], contrast: f64) -> Option<usize> {
         let all = self.all();
         let clear = |n: usize| clear(all[n]);
         let found: Vec<f64> = (0..all.len()).map(|n| if may_be[n] { clear(n) } else { 0.0 }).collect();
         let top = |n: usize| found[n.saturating_sub(TOP)..].iter().take(2 * TOP + 1).all(|other| *other <= found[n]);
         let tops = (0..found.len()).filter(|&n| found[n] >= contrast && top(n));
         let tops: Vec<(usize, f64)> = tops.map(|n| (FIRST + n, all[n][0].0)).collect();
-        let lag = one_bay(shortest(&tops)?, |lag| clear(lag - FIRST));
-        Some((between_steps(&self.pairs, lag) * STEP, clear(lag - FIRST)))
+        Some(one_bay(shortest(&tops)?, |lag| clear(lag - FIRST)))
+    }
+
+    /// Where the pairs about a lag lie, metres.
+    fn about(&self, lag: usize) -> f64 {
+        between_steps(&self.pairs, lag) * STEP
     }
 }
 
@@ -113,11 +124,12 @@ impl Parts {
         Counts::new(sum(self.0.values()))
     }
 
-    /// All pairs of each part and of those beside it.
-    pub fn about_each(&self) -> impl Iterator<Item = Counts> {
-        self.0.keys().map(|[u, v]| {
-            let about = (u - 1..=u + 1).flat_map(|u| self.0.range([u, v - 1]..=[u, v + 1]));
-            Counts::new(sum(about.map(|(_, counts)| counts)))
+    /// All pairs of each part and of those beside it, with the steps along and across that these hold.
+    pub fn about_each(&self) -> impl Iterator<Item = ([Range<i32>; 2], Counts)> {
+        self.0.keys().map(|part| {
+            let around = part.map(|n| (n - 1) * PART..(n + 2) * PART);
+            let [along, across] = around.each_ref().map(|steps| [steps.start, steps.end - 1]);
+            (around, self.within(along, across))
         })
     }
 }

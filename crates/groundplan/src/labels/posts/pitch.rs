@@ -10,6 +10,7 @@ use crate::labels::Evidence;
 use crate::labels::rows::Row;
 use crate::labels::view::turned::Turned;
 use crate::on_line::OnLine;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Specks this near to a line stand on it, metres.
@@ -25,8 +26,10 @@ const FACE: (f64, f64) = (0.1, 0.5);
 const ALONG: [f64; 2] = [0.15, 0.025];
 /// What lies in parts of the view no further from a row, metres, is about it.
 const ABOUT: f64 = 4.0;
-/// A pitch recurs about a row where more than chance are so far apart by as many of its deviations.
+/// A pitch recurs about a row where more than chance are so far apart by so many of its deviations; that of one place alone
+/// by so many.
 const RECURS: f64 = 2.0;
+const RECURS_ELSEWHERE: f64 = 6.0;
 /// What recurs in some part of the view and not in all of it stands out there by this factor.
 const LOCAL: f64 = 12.0;
 /// A pitch is of so many goods at most, which recur so many times as clearly, in pieces of lines of so many pitches, and by more
@@ -40,30 +43,40 @@ const HALVES: f64 = 2.0;
 
 /// From post to post along the rows of a direction.
 pub struct Pitch {
-    /// Of all together, metres.
-    pub common: f64,
+    /// Of all together, metres, or where these have none of those of one place.
+    told: f64,
+    is_common: bool,
+    /// Which lags recur along faces.
+    along: Vec<bool>,
     /// Where the view, and with it the first part, begins, metres.
     start: [f64; 2],
     parts: Parts,
-    /// Which lags recur along faces.
-    along: Vec<bool>,
-    /// From one of the goods to the next, metres, where the common pitch is some of these.
+    /// From one of the goods to the next, metres, where the pitch is some of these.
     pub goods: Option<f64>,
 }
 
 impl Pitch {
-    /// Of the rows about one, metres: halls have bays of their own. Where neither the common pitch recurs nor any other, no
-    /// posts tell bays there.
+    /// Of all together, metres, where these have one.
+    pub fn common(&self) -> Option<f64> {
+        self.is_common.then_some(self.told)
+    }
+
+    /// The same, or else of those of one place.
+    pub fn told(&self) -> f64 {
+        self.told
+    }
+
+    /// Of the rows about one, metres: halls have bays of their own. Where neither this pitch recurs nor any other, no posts
+    /// tell bays there.
     pub fn about(&self, row: &Row) -> Option<f64> {
-        let steps = |ends: [f64; 2], axis: usize| {
-            wider(ends, ABOUT).map(|place| ((place - self.start[axis]) / STEP).floor() as i32)
-        };
+        let steps = |ends: [f64; 2], axis: usize| wider(ends, ABOUT).map(|place| step(place - self.start[axis]));
         let counts = self.parts.within(steps(row.along, 0), steps(row.across, 1));
         let own = counts.pitch(&self.along);
-        let lag = (self.common / STEP).round() as usize;
-        if !(FIRST..=LAST).contains(&lag) || counts.excess(1, lag).1 >= RECURS {
-            // What is common may be two bays where posts of another hall say so.
-            return own.filter(|own| (self.common - 2.0 * own).abs() <= HALVES * STEP).or(Some(self.common));
+        let lag = (self.told / STEP).round() as usize;
+        let least = if self.is_common { RECURS } else { RECURS_ELSEWHERE };
+        if !(FIRST..=LAST).contains(&lag) || counts.excess(1, lag).1 >= least {
+            // What is told may be two bays where posts of another hall say so.
+            return own.filter(|own| (self.told - 2.0 * own).abs() <= HALVES * STEP).or(Some(self.told));
         }
         own
     }
@@ -82,41 +95,92 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<Pitch> {
     lines.retain(|(_, places)| places.len() >= FEWEST);
     let mut parts = Parts::default();
     for (offset, places) in &lines {
-        parts.add(((offset - view.start[1]) / STEP).floor() as i32, places);
+        parts.add(step(offset - view.start[1]), places);
     }
+    let Found { told, is_common, along } =
+        of_all(evidence, view, &lines, &parts).or_else(|| of_one_place(view, &lines, &parts))?;
+    Some(Pitch { told, is_common, along, start: view.start, parts, goods: goods(&lines, told) })
+}
+
+/// Specks on lines: where each lies, and the steps along it at which they stand.
+type Lines = [(f64, Vec<i32>)];
+
+/// A pitch, whether it is that of all lines together, and which lags recur along faces.
+struct Found {
+    told: f64,
+    is_common: bool,
+    along: Vec<bool>,
+}
+
+/// The pitch of all lines together, or where halls whose bays differ have none in common the clearest one of a place.
+fn of_all(evidence: &Evidence, view: &Turned, lines: &Lines, parts: &Parts) -> Option<Found> {
     let counts = parts.all();
-    let all = counts.all();
     // Where nothing recurs it need not be asked whether it is along faces.
-    let recurs = |counts: &Counts, contrast: f64| counts.all().iter().any(|lag| clear(*lag) >= contrast);
-    if !recurs(&counts, CONTRAST) && !parts.about_each().any(|counts| recurs(&counts, LOCAL)) {
+    if !recurs(&counts, CONTRAST) {
         return None;
     }
     let of_line = |n: usize| {
         let (offset, places) = &lines[n];
         let beside = [offset - BESIDE.1, offset + BESIDE.1];
         let key = || view.key_of_cells(view.key_on_line(evidence, *offset), beside);
-        evidence.recall.faced.or_find(key, || Arc::new(along_faces(view, *offset, places)))
+        evidence.recall.faced.or_find(key, || Arc::new(along_faces(view, *offset, places, places.len())))
     };
-    let add = |sums: &mut Vec<u32>, more: &[u32]| sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
     let threads = worth(view.size[0] * view.size[1], evidence.threads);
     let empty = || vec![0; COUNTED.end];
     let faces = fold(lines.len(), threads, empty, |sums, n| add(sums, &of_line(n)), |sums, more| add(sums, &more));
-    let faces = Counts::new(faces.into_iter().map(f64::from).collect());
-    let is_along =
-        |n: usize| (0..2).all(|twice| faces.excess(twice + 1, FIRST + n).0 >= ALONG[twice] * all[n][twice].0);
-    let along: Vec<bool> = (0..all.len()).map(is_along).collect();
-    // Halls whose bays differ may have none in common.
+    let along = recur_along(&counts, faces);
     let clearest = || {
-        let of_each = parts.about_each().filter_map(|counts| counts.clear_pitch(&along, LOCAL));
-        of_each.max_by(|one, two| one.1.total_cmp(&two.1)).map(|(pitch, _)| pitch)
+        let of_each = parts.about_each().filter_map(|(_, counts)| counts.clear_pitch(&along, LOCAL));
+        of_each.max_by(|one, two| one.1.total_cmp(&two.1)).map(|(pitch, _)| (pitch, false))
     };
-    let common = counts.pitch(&along).or_else(clearest)?;
-    Some(Pitch { common, start: view.start, parts, along, goods: goods(&lines, common) })
+    let (told, is_common) = counts.pitch(&along).map(|pitch| (pitch, true)).or_else(clearest)?;
+    Some(Found { told, is_common, along })
+}
+
+/// The same of the place where it is clearest, with what recurs along faces there.
+fn of_one_place(view: &Turned, lines: &Lines, parts: &Parts) -> Option<Found> {
+    let of_place = |([steps, across], counts): ([Range<i32>; 2], Counts)| {
+        let mut faces = vec![0; COUNTED.end];
+        for (offset, places) in lines.iter().filter(|(offset, _)| across.contains(&step(offset - view.start[1]))) {
+            let reached = steps.end + COUNTED.end as i32;
+            let [from, to, last] =
+                [steps.start, steps.end, reached].map(|end| places.partition_point(|place| *place < end));
+            add(&mut faces, &along_faces(view, *offset, &places[from..last], to - from));
+        }
+        let along = recur_along(&counts, faces);
+        let (told, clear) = counts.clear_pitch(&along, LOCAL)?;
+        Some((clear, Found { told, is_common: false, along }))
+    };
+    let found = parts.about_each().filter(|(_, counts)| recurs(counts, LOCAL)).filter_map(of_place);
+    found.max_by(|one, two| one.0.total_cmp(&two.0)).map(|(_, found)| found)
+}
+
+/// True when some lag, and twice that, stands out by a factor.
+fn recurs(counts: &Counts, contrast: f64) -> bool {
+    counts.all().iter().any(|lag| clear(*lag) >= contrast)
+}
+
+/// Which lags recur along faces, by how many pairs are so far apart in all and with a row beside them.
+fn recur_along(counts: &Counts, faces: Vec<u32>) -> Vec<bool> {
+    let faces = Counts::new(faces.into_iter().map(f64::from).collect());
+    let is_along = |(n, all): (usize, [(f64, f64); 2])| {
+        (0..2).all(|twice| faces.excess(twice + 1, FIRST + n).0 >= ALONG[twice] * all[twice].0)
+    };
+    counts.all().into_iter().enumerate().map(is_along).collect()
+}
+
+fn add(sums: &mut [u32], more: &[u32]) {
+    sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+}
+
+/// In which step from where a view begins a place lies.
+fn step(place: f64) -> i32 {
+    (place / STEP).floor() as i32
 }
 
 /// From one of the goods to the next where a pitch is some of these, metres: what recurs at a whole part of it hardly does so at the
 /// whole, as posts would.
-fn goods(lines: &[(f64, Vec<i32>)], pitch: f64) -> Option<f64> {
+fn goods(lines: &Lines, pitch: f64) -> Option<f64> {
     let steps = pitch / STEP;
     let (mut powers, mut pieces) = ([0.0; MOST_GOODS], 0.0);
     for (_, places) in lines {
@@ -141,8 +205,9 @@ fn piece(place: i32, steps: f64) -> i64 {
     (f64::from(place) / (PIECE * steps)).floor() as i64
 }
 
-/// How many pairs of specks on a line, of those so far apart, are as many steps apart with a row beside them.
-fn along_faces(view: &Turned, offset: f64, places: &[i32]) -> Vec<u32> {
+/// How many pairs of specks on a line, of those so far apart, are as many steps apart with a row beside them; the one is of so
+/// many of the first.
+fn along_faces(view: &Turned, offset: f64, places: &[i32], first: usize) -> Vec<u32> {
     let beside = [-1.0, 1.0].map(|side| taken(view, offset, side));
     let speck = |&place: &i32| {
         let column = view.column(view.start[0] + f64::from(place) * STEP);
@@ -150,7 +215,7 @@ fn along_faces(view: &Turned, offset: f64, places: &[i32]) -> Vec<u32> {
     };
     let specks: Vec<Speck> = places.iter().map(speck).collect();
     let mut faces = vec![0; COUNTED.end];
-    pairs(places, places.len(), |lag, [one, other]| {
+    pairs(places, first, |lag, [one, other]| {
         if is_face(&specks[one], &specks[other]) {
             faces[lag] += 1;
         }

@@ -180,7 +180,8 @@ impl Turned {
     /// Finds what recurs along the lines of what is seen; of the gradients the specks are asked.
     pub fn recur(&mut self, evidence: &Evidence) {
         let found = pitch::find(evidence, self);
-        self.pitch = found.as_ref().map(|found| found.common).or(self.framed);
+        let told = || found.as_ref().map(Pitch::told);
+        self.pitch = found.as_ref().and_then(Pitch::common).or(self.framed).or_else(told);
         self.by_rows = found.map(Arc::new);
         if evidence.recall.keeps() {
             self.keys = self.find_keys();
@@ -195,7 +196,12 @@ impl Turned {
     /// From post to post along a row, metres: as of the racks on legs in it, and where posts recur in some rows of the view, as
     /// about that one.
     pub fn pitch_of(&self, row: &Row) -> Option<f64> {
-        let about = || self.by_rows.as_ref().map_or(self.pitch, |pitch| pitch.about(row));
+        // Where frames tell a pitch it is that of all rows about which posts tell none.
+        let about = || match &self.by_rows {
+            Some(pitch) if pitch.common().is_some() => pitch.about(row),
+            Some(pitch) => pitch.about(row).or(self.framed),
+            None => self.pitch,
+        };
         self.on_legs.about(row).or_else(about)
     }
 

@@ -49,7 +49,7 @@ pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a 
     let reaching: Vec<Row> = rows.iter().map(|row| walled::up_to_walls(views, strips, &placed, widest, row)).collect();
     let least = evidence.parameters.labels_min_width;
     // A way that is known cuts the row that it leads through.
-    let are_racked = |row: &&Row| views[row.direction].pitch.is_some();
+    let are_racked = |row: &&Row| views[row.direction].pitch_of(row).is_some();
     let (racked, others) = rows.iter().filter(|row| row.between.is_some()).partition(are_racked);
     let [racked, others]: [Option<Vec<Row>>; 2] = [uncut(racked), uncut(others)];
     let seen_whole = |rows| seen(evidence, look, views, strips, rows, rows);

@@ -290,7 +290,7 @@ impl<'a> Asked<'a> {
     /// back to back goods seldom line up so.
     fn is_between_bars_of_two_racks(&self) -> bool {
         let place = self.context.place;
-        place.views[0].pitch.is_some()
+        self.pitch().is_some()
             && place.are_double(self.own)
             && (self.own.racks > 1 || !self.is_told_within())
             && self.context.bars.are_beside(self.n)

@@ -184,8 +184,8 @@ impl Place<'_> {
         let (mut found, mut next) = (BTreeSet::from([row]), vec![row]);
         while let Some(n) = next.pop() {
             let beside = self.rows[n].1.into_iter().flat_map(|aisle| self.beside[aisle].iter().flatten().copied());
-            let face = |m: usize| overlap(self.rows[n].0.along, self.rows[m].0.along) > 0.0;
-            next.extend(beside.filter(|&m| !self.walls[m] && face(m) && found.insert(m)));
+            let face_one_another = |m: usize| overlap(self.rows[n].0.along, self.rows[m].0.along) > 0.0;
+            next.extend(beside.filter(|&m| !self.walls[m] && face_one_another(m) && found.insert(m)));
         }
         found
     }

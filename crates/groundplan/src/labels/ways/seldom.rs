@@ -54,7 +54,7 @@ pub fn are_open<'a>(
     pitch: Option<f64>,
     are_no_bays: bool,
 ) -> bool {
-    let (mut half_open, mut open, mut open_rows, mut places) = (0, 0, 0, 0.0);
+    let (mut half_open, mut opens, mut places) = (0, Vec::new(), 0.0);
     let (mut widths, mut bays) = (0, 0);
     let is_long = |shelves: &&Shelves| is_double(&shelves.row) && shelves.row.length() >= LONG * width;
     let rows: Vec<&Shelves> = rows.filter(is_long).collect();
@@ -75,11 +75,12 @@ pub fn are_open<'a>(
             widths += 1;
             bays += usize::from(pitch.is_none_or(|pitch| is_left_by_posts((to - from) as f64 * view.cell, pitch)));
         }
-        open_rows += usize::from(own > 0);
-        open += own;
+        opens.push(own);
         half_open += shelves.halves.iter().map(|half| as_wide(half).saturating_sub(own)).sum::<usize>();
         places += shelves.seen(view) / width;
     }
+    let open = opens.iter().sum();
+    let open_rows = opens.iter().filter(|own| **own > 0).count();
     let expected = by_chance(open, half_open as f64, places);
     let may_be_bay = pitch.is_some_and(|pitch| is_as_bays(width, pitch));
     // Both racks may be emptied together, bay by bay: what is as wide as posts leave is then most of what is open.
@@ -88,7 +89,7 @@ pub fn are_open<'a>(
     open_rows >= ROWS
         && (are_few || !are_no_bays)
         && !(may_be_bay && half_open > 0 && holds([share, BAYS[1]], open as f64 / places))
-        && likely(open, expected) < UNLIKELY
+        && likely(open, expected) * evenly(&opens) < UNLIKELY
         && (open_rows == count
             || open >= SEVERAL
                 && (expected < EXPECTED || are_few && expected < FALSE * open as f64)
@@ -170,14 +171,20 @@ impl<'a> Rest<'a> {
         likely(self.open(), self.halves / 2.0 / self.width * share * share)
     }
 
+    /// True when each row is open at as many places, or at as nearly as many as chance seldom deals them.
     fn are_as_many(&self) -> bool {
         // In pieces that are too short for any there is none.
         let long = self.rows.iter().filter(|row| row.shelves.count() as f64 >= LONG * self.width);
-        let [least, most, count] =
-            long.fold([usize::MAX, 0, 0], |[a, b, count], row| [a.min(row.open), b.max(row.open), count + 1]);
-        let are_even = || dealt_so_evenly(self.open(), count) < UNLIKELY_IN_FULL;
-        least == most || least > 0 && most - least == 1 && are_even()
+        let open: Vec<usize> = long.map(|row| row.open).collect();
+        let (Some(least), Some(most)) = (open.iter().min(), open.iter().max()) else { return false };
+        least == most || *least > 0 && evenly(&open) < UNLIKELY_IN_FULL
     }
+}
+
+/// How likely it is that chance deals as many places to some rows as evenly, where none has two more than another; else it is sure.
+fn evenly(places: &[usize]) -> f64 {
+    let [least, most] = places.iter().fold([usize::MAX, 0], |[a, b], own| [a.min(*own), b.max(*own)]);
+    if least + 1 >= most { dealt_so_evenly(places.iter().sum(), places.len()) } else { 1.0 }
 }
 
 /// How likely it is that of places dealt to rows by chance, each row as likely as another, none has two more than another.
