@@ -177,6 +177,20 @@ def test_a_wing_that_is_small_beside_the_hall_has_its_two_directions(turn: float
     assert len(angles_of(site(12))) == 2
 
 
+@pytest.mark.parametrize("turn", [20, 33])
+def test_a_wing_of_whose_passage_and_first_wall_alone_something_was_seen_has_its_two_directions(turn: float) -> None:
+    site = Canvas(900, 900).room(40, 40, 860, 330)
+    for y in (80, 140, 200, 260):
+        site.box(100, y, 800, y + 30)
+    site.turn(turn)
+    for y in (0, 40):
+        site.box(420, 500 + y, 720, 504 + y)
+    site.box(720, 470, 724, 575)
+    found = np.radians(angles_of(site.picture))
+    assert len(found) == 4
+    assert (apart(np.radians([0, 90, turn, turn - 90]), found).min(axis=1) < np.radians(0.5)).all(), np.degrees(found)
+
+
 @pytest.mark.parametrize("degrees", [0.0, 23.0])
 def test_beveled_corners_of_blocks_are_no_wing(degrees: float) -> None:
     """A hall of 24 m by 16 m with three blocks of 5 m by 11 m, of each corner of which 1.2 m are cut off."""

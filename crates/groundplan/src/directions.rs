@@ -67,8 +67,11 @@ pub fn find_directions(frame: &Frame, gradients: &Gradients, parameters: &Parame
             let (strong, weak): (Vec<_>, Vec<_>) =
                 found.into_iter().partition(|f| f.metres >= parameters.directions_min_weight * strongest);
             found = strong.into_iter().filter(Candidate::exceeds_chance).collect();
+            // What is a wing's is no hall's second.
             let wings = wings(&weak, &found, strongest, parameters);
-            found.extend(seconds(&weak, &found));
+            let is_of_wing = |f: &Candidate| wings.iter().any(|of_wing| of_wing.angle == f.angle);
+            let others: Vec<Candidate> = weak.into_iter().filter(|f| !is_of_wing(f)).collect();
+            found.extend(seconds(&others, &found));
             found.extend(wings);
         }
     }
