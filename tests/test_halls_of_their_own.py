@@ -73,32 +73,3 @@ def test_each_full_row_has_its_way_beside_a_hall_through_all_rows_of_which_one_l
     second = hall(picture, first + 3, 2.5, way, 2.8, [(np.ones((2, 9), np.bool_), before) for before in (2, 6, 4)])
     floor(picture, first - 1, 8.1, first + 4, 10.1)
     assert junctions(picture, first + 3, second) == ["L"] * 4 + ["T"] * 9 + ["X"]
-
-
-def three_halls(bays: tuple[float, ...], seed: int) -> tuple[Picture, list[tuple[float, float]]]:
-    """Halls of three rows, of which six in ten bays are full, with a way of 2.4 m through all; where each is."""
-    draws = np.random.default_rng(seed)
-    picture = unknown(180, 24)
-    left, ends = 2.0, []
-    for bay in bays:
-        counts = draws.integers(6, 9, 2)
-        rows = [(draws.random((2, counts.sum())) < 0.6, int(counts[0])) for _ in range(3)]
-        right = hall(picture, left, bay, 2.4, 3.0, rows)
-        if ends:
-            floor(picture, left - 4, 8.1, left + 1, 10.1)
-        ends.append((left, right))
-        left = right + 3
-    return picture, ends
-
-
-def test_most_halls_have_the_way_through_all_their_rows_whatever_is_as_wide_in_the_others() -> None:
-    # Some have a way too many, by bays that happen to be empty in line, or none, alone as well.
-    right = []
-    for bays in ((2.3, 2.9, 2.6), (2.2, 2.7, 3.3)):
-        for seed in range(4):
-            picture, ends = three_halls(bays, seed)
-            for n, (left, to) in enumerate(ends):
-                passages = (n > 0) + (n + 1 < len(ends))
-                expected = ["L"] * 4 + ["T"] * (6 - passages) + ["X"] * (2 + passages)
-                right.append(junctions(picture, left, to) == expected)
-    assert sum(right) >= 18, sum(right)

@@ -23,8 +23,8 @@ use crate::labels::rows::seen::Seen;
 use crate::labels::view::look::Look;
 use crate::labels::view::turned::Turned;
 use std::borrow::Cow;
-use std::cell::{LazyCell, OnceCell};
-use std::collections::{BTreeMap, BTreeSet};
+use std::cell::LazyCell;
+use std::collections::BTreeMap;
 use std::iter;
 
 /// Gates whose middles are this near across are in line, and one when they end this near to each other, metres.
@@ -101,20 +101,11 @@ pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a 
     let is_racked = views.iter().any(|view| view.pitch.is_some());
     let tells = |n: &usize| !is_racked || !passing::is_past_ends_as_bays(&known, &places, *n);
     let telling = (first..known.len()).filter(tells).map(|n| &known[n]);
-    let mut sure = through.widths(telling.chain(&gates));
+    let mut sure = Widths::of(views, telling.chain(&gates));
     // Where a direction has no ways at all nothing speaks against one.
     let is_any_known = |direction: usize| known.iter().any(|way| way.direction == direction);
-    let within = OnceCell::new();
-    let several = through.find(&mut sure, |through, hall| {
-        let halls = || passing::are_within(&places, &known).flat_map(|way| through.halls_of(way)).collect();
-        let within: &BTreeSet<usize> = within.get_or_init(halls);
-        within.contains(&hall)
-    });
-    // Where more than one hall's rows lie beside a gate it is as wide as ways of one of them.
-    let are_sure = |gate: &Strip, pitch: Option<f64>| {
-        let halls = through.halls_of(gate);
-        halls.into_iter().any(|hall| sure[hall].have(gate.width() + BETWEEN_CELLS, pitch))
-    };
+    let within = LazyCell::new(|| passing::are_within(views, &places));
+    let several = through.find(&mut sure, |direction| within[direction]);
     let mut turns: Vec<Strip> = Vec::new();
     for way in iter::once(&through).chain(&whole).flat_map(Through::turns) {
         if !turns.iter().any(|known| is_in(&way, known)) {
@@ -127,15 +118,16 @@ pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a 
     let open = LazyCell::new(|| passing::open_through(&all_places, &all, known.len()));
     let between_bars = LazyCell::new(|| bars::are_between(evidence, look, &all_places, &all, known.len()));
     let is_told = |n: usize, gate: &Strip| {
+        let widths = &sure[gate.direction];
         let pitch = crossing(views, gate.direction).and_then(|view| view.pitch);
-        !is_any_known(gate.direction) || are_sure(gate, pitch) || open[n] || between_bars[n]
+        !is_any_known(gate.direction) || widths.have(gate.width() + BETWEEN_CELLS, pitch) || open[n] || between_bars[n]
     };
     gates.extend(doubtful.iter().enumerate().filter(|(n, gate)| is_told(*n, gate)).map(|(_, gate)| gate.clone()));
     // Where no row beside tells a bay from a way, a way is as wide as others of the place; and where ways are staggered from
     // row to row, as those.
-    let is_as_wide = |gate: &Strip, pitch, is_alone: bool| {
-        let is_staggered = || staggered[gate.direction].have(gate.width() + BETWEEN_CELLS, pitch);
-        if is_alone { are_sure(gate, pitch) } else { is_staggered() }
+    let is_as_wide = |gate: &Strip, pitch, is_alone| {
+        let widths = if is_alone { &sure } else { &*staggered };
+        widths[gate.direction].have(gate.width() + BETWEEN_CELLS, pitch)
     };
     let as_wide = between_racks.into_iter().filter(|(gate, pitch, is_alone)| is_as_wide(gate, *pitch, *is_alone));
     gates.extend(as_wide.map(|(gate, ..)| gate));
@@ -223,9 +215,8 @@ pub fn through_several(
     let seen = seen(evidence, look, views, strips, rows, rows);
     let open = |row: &Seen| row.columns.open().iter().map(|[from, to]| to - from).sum::<f64>();
     let taken: Vec<&Row> = seen.iter().filter(|row| open(row) < OPEN * row.row.length()).map(|row| row.row).collect();
-    let mut through = Through::new(views, strips, seen);
-    let mut sure = through.widths(strips.iter().filter(|strip| !strip.bays));
-    let mut ways = in_line(through.find(&mut sure, |_, _| false));
+    let mut sure = Widths::of(views, strips.iter().filter(|strip| !strip.bays));
+    let mut ways = in_line(Through::new(views, strips, seen).find(&mut sure, |_| false));
     let leads_through = |way: &Strip, row: &Row| {
         let middle = f64::midpoint(row.across[0], row.across[1]);
         let [s, u] = views[row.direction].crossing(&views[way.direction], middle, way.middle());

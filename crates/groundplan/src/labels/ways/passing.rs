@@ -225,10 +225,13 @@ fn is_no_number_of(goods: f64, width: f64) -> bool {
     (width - (width / goods).round() * goods).abs() > BETWEEN_GOODS
 }
 
-/// Those of some strips that lead through rows of one of the places between their ends.
-pub fn are_within<'s>(places: &[Place], strips: &'s [Strip]) -> impl Iterator<Item = &'s Strip> {
-    let is_within = |(n, _): &(usize, &Strip)| places.iter().any(|place| place.passing[*n].is_within);
-    strips.iter().enumerate().filter(is_within).map(|(_, strip)| strip)
+/// For each direction, whether some of its strips lead through rows of one of the places between their ends.
+pub fn are_within(views: &[Turned], places: &[Place]) -> Vec<bool> {
+    let mut are = vec![false; views.len()];
+    for Place { views: [_, other], passing, .. } in places {
+        are[other.direction] |= passing.iter().any(|own| own.is_within);
+    }
+    are
 }
 
 /// True when one of some strips leads past the ends of rows alone and is as wide as their bays: it is as wide as the hall

@@ -6,8 +6,8 @@
 use super::chance::{Openings, SLACK};
 use super::turns;
 use super::widths::{Widths, are_alike};
-use crate::ends::{around, holds, overlap, shared};
-use crate::labels::beside::{Beside, placed};
+use crate::ends::{overlap, shared};
+use crate::labels::beside::Beside;
 use crate::labels::corridors::Strip;
 use crate::labels::corridors::family;
 use crate::labels::rows::sections::WIDTH;
@@ -70,11 +70,6 @@ pub struct Through<'a> {
     walls: Vec<bool>,
     /// For each row, which of its ends are at a wall.
     walled: Vec<[bool; 2]>,
-    /// For each row the hall that it is of, by the first row of that.
-    halls: Vec<usize>,
-    /// Where the rows of each direction lie, and for each the direction that crosses it, too.
-    placed: Vec<Beside>,
-    views: BTreeMap<usize, [&'a Turned; 2]>,
 }
 
 impl<'a> Through<'a> {
@@ -86,63 +81,10 @@ impl<'a> Through<'a> {
             beside.entry(*below).or_default()[1].push(n);
         }
         let next = |side: usize| rows.iter().map(|row| beside[&row.between[side]][side].clone()).collect();
-        let (below, above): (Vec<_>, Vec<_>) = (next(0), next(1));
+        let (below, above) = (next(0), next(1));
         let walls = whole::are_between_halls(views, &rows.iter().map(|seen| seen.row).collect::<Vec<_>>());
         let walled = rows.iter().map(|seen| [0, 1].map(|side| seen.is_at_wall(strips, side))).collect();
-        let halls = Self::halls(&rows, [&above, &below], &walls);
-        let placed = placed(views, rows.iter().map(|seen| seen.row.place()));
-        let views_of = rows.iter().map(|seen| (seen.row.direction, seen.views)).collect();
-        let open = Openings::new(views.len(), &rows);
-        Self { open, rows, above, below, walls, walled, halls, placed, views: views_of }
-    }
-
-    /// For each row the first one of its hall: those that face one another are of one, and pieces of one row are; along an aisle
-    /// that leads from one hall into the next there are rows of both. A wall between halls is one by itself.
-    fn halls(rows: &[Seen], beside: [&[Vec<usize>]; 2], walls: &[bool]) -> Vec<usize> {
-        let mut pieces: BTreeMap<_, Vec<usize>> = BTreeMap::new();
-        for (n, seen) in rows.iter().enumerate() {
-            pieces.entry((seen.row.direction, seen.between)).or_default().push(n);
-        }
-        let mut halls = vec![usize::MAX; rows.len()];
-        for first in 0..rows.len() {
-            let mut next = if halls[first] == usize::MAX { vec![first] } else { Vec::new() };
-            while let Some(n) = next.pop() {
-                halls[n] = first;
-                let Seen { row, between, .. } = &rows[n];
-                let facing = beside.into_iter().flat_map(|beside| &beside[n]);
-                let facing = facing.filter(|&&m| overlap(row.along, rows[m].row.along) > 0.0);
-                let all = facing.chain(&pieces[&(row.direction, *between)]).copied();
-                next.extend(all.filter(|&m| halls[m] == usize::MAX && !walls[m] && !walls[n]));
-            }
-        }
-        halls
-    }
-
-    /// The halls between whose rows' ends a strip leads, or between these and the walls beyond, each by its first row. What passes
-    /// the ends is as wide as the hall leaves, and tells nothing of the rows.
-    pub fn halls_of(&self, strip: &Strip) -> BTreeSet<usize> {
-        let mut halls = BTreeSet::new();
-        for [view, other] in self.views.values().filter(|[_, other]| other.direction == strip.direction) {
-            let corners = other.rectangle(strip.along, strip.across);
-            let ends = |axis: usize| around(corners.iter().map(|corner| view.place(*corner)[axis]));
-            let [along, across] = [0, 1].map(ends);
-            halls.extend(self.placed[view.direction].touching(along, across).into_iter().filter_map(|n| {
-                let row = self.rows[n].row;
-                let middle = f64::midpoint(row.across[0], row.across[1]);
-                let [s, u] = view.crossing(other, middle, strip.middle());
-                (holds(strip.along, s) && holds(row.along, u)).then_some(self.halls[n])
-            }));
-        }
-        halls
-    }
-
-    /// How wide some ways are, for each hall that they lead through.
-    pub fn widths<'s>(&self, ways: impl Iterator<Item = &'s Strip>) -> Vec<Widths> {
-        let mut widths = vec![Widths::default(); self.rows.len()];
-        for way in ways {
-            self.halls_of(way).into_iter().for_each(|hall| widths[hall].add(way.width()));
-        }
-        widths
+        Self { open: Openings::new(views.len(), &rows), rows, above, below, walls, walled }
     }
 
     pub fn rows(&self) -> &[Seen<'a>] {
@@ -181,9 +123,9 @@ impl<'a> Through<'a> {
         self.walls[row]
     }
 
-    /// The ways, where those of known widths are in each hall, each through one row after another; `known_within` tells of a
-    /// hall whether some of those lead through rows between their ends.
-    pub fn find(&mut self, widths: &mut [Widths], known_within: impl Fn(&Self, usize) -> bool) -> Vec<Strip> {
+    /// The ways, where those of known widths are, each through one row after another; `known_within` tells of each direction
+    /// whether some of those lead through rows between their ends.
+    pub fn find(&mut self, widths: &mut [Widths], known_within: impl Fn(usize) -> bool) -> Vec<Strip> {
         let mut found_within = vec![false; widths.len()];
         let mut left = Vec::new();
         for n in 0..self.rows.len() {
@@ -202,7 +144,7 @@ impl<'a> Through<'a> {
             left.sort_by(|a, b| a.chance.total_cmp(&b.chance));
             let known = ways.len();
             for common in &left {
-                let is_told = |hall: usize| found_within[hall] || known_within(self, hall);
+                let is_told = |direction: usize| found_within[direction] || known_within(direction);
                 if self.is_way(common, widths, is_told) && !is_taken(&taken, common) {
                     common.rows.iter().for_each(|&row| taken[row].push(common.ends));
                     ways.push(common.clone());
@@ -213,12 +155,12 @@ impl<'a> Through<'a> {
             }
             for way in &ways[known..] {
                 let first = &self.rows[way.rows[0]];
-                let (hall, is_within) = (self.hall_of(way), !self.is_past_ends(way));
+                let (direction, is_within) = (first.views[1].direction, !self.is_past_ends(way));
                 // What passes the ends is as wide as the hall leaves: if that is a bay's width it tells no others.
                 if is_within || !first.is_as_bays(way.ends) {
-                    widths[hall].add(way.width() + BETWEEN_CELLS);
+                    widths[direction].add(way.width() + BETWEEN_CELLS);
                 }
-                found_within[hall] |= is_within;
+                found_within[direction] |= is_within;
                 self.open.take(&way.rows, way.ends);
             }
             self.open.count();
@@ -366,25 +308,19 @@ impl<'a> Through<'a> {
     }
 
     fn is_way(&self, common: &Common, widths: &[Widths], is_told_within: impl Fn(usize) -> bool) -> bool {
-        let (view, hall) = (self.rows[common.rows[0]].views[0], self.hall_of(common));
-        let known = &widths[hall];
+        let [view, other] = self.rows[common.rows[0]].views;
+        let known = &widths[other.direction];
         let is_as_wide = known.have(common.width() + BETWEEN_CELLS, view.pitch_of(self.rows[common.rows[0]].row));
         let limit = match (self.is_whole(common), is_as_wide) {
             (false, _) => SOME,
             (true, _) if self.is_past_ends(common) => LIKELY,
             (true, true) => ALIKE,
-            (true, false) if known.is_empty() || !is_told_within(hall) && self.is_as_aisles(common) => FIRST,
+            (true, false) if known.is_empty() || !is_told_within(other.direction) && self.is_as_aisles(common) => FIRST,
             // Goods hardly narrow an empty bay of each row alike; racks end so.
             (true, false) if self.rows[common.rows[0]].is_as_bays(common.ends) && !self.is_closed(common) => SOME,
             (true, false) => OTHER,
         };
         common.chance < limit && !self.is_walled(common) && !self.leads_through_bays(common)
-    }
-
-    /// The hall of the first of its rows that is no wall, by its first row.
-    fn hall_of(&self, common: &Common) -> usize {
-        let first = common.rows.iter().find(|&&n| !self.walls[n]).unwrap_or(&common.rows[0]);
-        self.halls[*first]
     }
 
     /// True when something closes the rows' ends as a rule, but for those at walls, and next to nothing closes them on one side

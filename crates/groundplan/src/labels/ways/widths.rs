@@ -10,7 +10,7 @@ const ALIKE: f64 = 0.15;
 /// A bay that is so much wider or narrower than a way, as a share of it, can be told from one.
 const APART: f64 = 0.1;
 
-/// How wide the ways of a hall, or of a direction, are that are no bays, metres.
+/// How wide the ways of a direction are that are no bays, metres.
 #[derive(Clone, Default)]
 pub struct Widths(Vec<f64>);
 
