@@ -38,15 +38,15 @@ def racks(picture: Picture, left: float, low: float, bay: float, full: Bays) -> 
         for n in range(len(own) + 1):
             (post,) = pixels(left + n * bay)
             picture[bottom : bottom + 2, post - 1 : post + 1] = picture[top - 2 : top, post - 1 : post + 1] = 0
-        for n in np.flatnonzero(own):
+        for n in np.flatnonzero(own).tolist():
             here, there = pixels(left + n * bay, left + (n + 1) * bay)
             picture[bottom + 1 : top, here + 2 : there - 2] = 0
-    return left + full.shape[1] * bay
+    return left + int(full.shape[1]) * bay
 
 
 def hall(picture: Picture, left: float, bay: float, way: float, aisle: float, rows: list[tuple[Bays, int]]) -> float:
     """Rows of racks with aisles and ways of one width around, each with a way after so many bays; where it ends."""
-    length = rows[0][0].shape[1] * bay + way
+    length = int(rows[0][0].shape[1]) * bay + way
     right, low = left + length + 2 * aisle, 2 + aisle
     floor(picture, left, 2, right, low + len(rows) * (2 * DEPTH + aisle))
     for row, (full, before) in enumerate(rows):
