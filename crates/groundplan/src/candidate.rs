@@ -73,7 +73,8 @@ pub fn seconds(weak: &[Candidate], strong: &[Candidate]) -> Vec<Candidate> {
 }
 
 /// Those of a wing that is small beside the whole: they are not known by strong ones, but by one another, two that are square
-/// of which both are more than chance makes, or one that is long. What is so near to a strong one that its pixels speak for that one too is a part of its hall that the map has turned.
+/// of which both are more than chance makes, or one that is long. What is so near to a strong one that its pixels speak for that
+/// one too is a part of its hall that the map has turned.
 pub fn wings(weak: &[Candidate], strong: &[Candidate], strongest: f64, parameters: &Parameters) -> Vec<Candidate> {
     let tolerance = parameters.radiograms_tolerance_deg.to_radians();
     let has = |f: &Candidate, share: f64| f.metres >= share * strongest && f.longest >= WALL;

@@ -46,18 +46,25 @@ impl Counts {
     /// How many pairs are some times a lag apart beyond what chance makes, which is what lies around it, and how many of its
     /// deviations that is.
     pub fn excess(&self, times: usize, lag: usize) -> (f64, f64) {
-        let total = |reach: usize| {
-            let [from, to] = [times * (lag - reach), times * (lag + reach) + 1];
-            (self.below[to] - self.below[from], (to - from) as f64)
-        };
-        let ((near, few), (all, many)) = (total(POST), total(BASE));
+        let [(near, few), (all, many)] = [POST, BASE].map(|reach| self.total(times, lag, reach));
         let chance = (all - near) / (many - few) * few;
         (near - chance, (near - chance) / libm::sqrt(chance + 1.0))
+    }
+
+    /// How many pairs are some times a lag apart, or some times so many steps more or less, and of how many lags these are.
+    fn total(&self, times: usize, lag: usize, reach: usize) -> (f64, f64) {
+        let [from, to] = [times * (lag - reach), times * (lag + reach) + 1];
+        (self.below[to] - self.below[from], (to - from) as f64)
     }
 
     /// The same of each lag that is looked at, and of twice that: what recurs does so twice as far off too.
     pub fn all(&self) -> Vec<[(f64, f64); 2]> {
         (FIRST..=LAST).map(|lag| [1, 2].map(|times| self.excess(times, lag))).collect()
+    }
+
+    /// True when at some lag, and at twice that, there are as many pairs as it takes to stand out by a factor of nothing but them.
+    pub fn may_recur(&self, contrast: f64) -> bool {
+        (FIRST..=LAST).any(|lag| [1, 2].into_iter().all(|times| self.total(times, lag, POST).0 >= contrast))
     }
 
     /// The pitch, metres, of those of the lags that are looked at that may be one.

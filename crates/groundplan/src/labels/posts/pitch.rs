@@ -97,8 +97,9 @@ pub fn find(evidence: &Evidence, view: &Turned) -> Option<Pitch> {
     for (offset, places) in &lines {
         parts.add(step(offset - view.start[1]), places);
     }
-    let Found { told, is_common, along } =
-        of_all(evidence, view, &lines, &parts).or_else(|| of_one_place(view, &lines, &parts))?;
+    let all = parts.all();
+    let found = of_all(evidence, view, &lines, &parts, &all).or_else(|| of_one_place(view, &lines, &parts, &all));
+    let Found { told, is_common, along } = found?;
     Some(Pitch { told, is_common, along, start: view.start, parts, goods: goods(&lines, told) })
 }
 
@@ -113,10 +114,9 @@ struct Found {
 }
 
 /// The pitch of all lines together, or where halls whose bays differ have none in common the clearest one of a place.
-fn of_all(evidence: &Evidence, view: &Turned, lines: &Lines, parts: &Parts) -> Option<Found> {
-    let counts = parts.all();
+fn of_all(evidence: &Evidence, view: &Turned, lines: &Lines, parts: &Parts, counts: &Counts) -> Option<Found> {
     // Where nothing recurs it need not be asked whether it is along faces.
-    if !recurs(&counts, CONTRAST) {
+    if !recurs(counts, CONTRAST) {
         return None;
     }
     let of_line = |n: usize| {
@@ -128,7 +128,7 @@ fn of_all(evidence: &Evidence, view: &Turned, lines: &Lines, parts: &Parts) -> O
     let threads = worth(view.size[0] * view.size[1], evidence.threads);
     let empty = || vec![0; COUNTED.end];
     let faces = fold(lines.len(), threads, empty, |sums, n| add(sums, &of_line(n)), |sums, more| add(sums, &more));
-    let along = recur_along(&counts, faces);
+    let along = recur_along(counts, faces);
     let clearest = || {
         let of_each = parts.about_each().filter_map(|(_, counts)| counts.clear_pitch(&along, LOCAL));
         of_each.max_by(|one, two| one.1.total_cmp(&two.1)).map(|(pitch, _)| (pitch, false))
@@ -138,7 +138,11 @@ fn of_all(evidence: &Evidence, view: &Turned, lines: &Lines, parts: &Parts) -> O
 }
 
 /// The same of the place where it is clearest, with what recurs along faces there.
-fn of_one_place(view: &Turned, lines: &Lines, parts: &Parts) -> Option<Found> {
+fn of_one_place(view: &Turned, lines: &Lines, parts: &Parts, counts: &Counts) -> Option<Found> {
+    // A place has no more pairs than all have.
+    if !counts.may_recur(LOCAL) {
+        return None;
+    }
     let of_place = |([steps, across], counts): ([Range<i32>; 2], Counts)| {
         let mut faces = vec![0; COUNTED.end];
         for (offset, places) in lines.iter().filter(|(offset, _)| across.contains(&step(offset - view.start[1]))) {

@@ -16,7 +16,7 @@ pub const AS_WIDE: f64 = 0.85;
 const LONG: f64 = 2.0;
 /// Fewer such rows tell nothing.
 const ROWS: usize = 2;
-/// It is not by chance that as many places are open when that is less likely than this.
+/// It is not by chance that as many places are open, and dealt to the rows as evenly, when that is less likely than this.
 const UNLIKELY: f64 = 0.01;
 /// The same where each of the rows is open at as many, which chance seldom makes.
 const UNLIKELY_IN_FULL: f64 = 0.1;
@@ -45,8 +45,9 @@ pub fn is_double(row: &Row) -> bool {
 
 /// True when several of some rows side by side that are of two racks are open at places of a width, and all are at as many as
 /// they would hardly be by chance if each rack were empty where it is, whatever the other is: where one is open nowhere,
-/// hardly any such place is expected at all. Where no rack is empty alone both may be emptied together, bay by bay. And if that is
-/// asked for no more than some of the places may be as wide as bays are.
+/// hardly any such place is expected at all. How evenly they are dealt to the rows counts with how many they are. Where no rack
+/// is empty alone both may be emptied together, bay by bay. And if that is asked for no more than some of the places may be as
+/// wide as bays are.
 pub fn are_open<'a>(
     view: &Turned,
     rows: impl Iterator<Item = &'a Shelves>,
