@@ -2,6 +2,7 @@
 
 pub(super) mod across;
 pub(super) mod alone;
+pub(super) mod backed;
 pub(super) mod bars;
 pub(super) mod carried;
 pub(super) mod chance;
@@ -31,7 +32,7 @@ use super::rows::sections::{BAY, is_as_bays};
 use super::rows::{DEPTH, SHORTEST};
 use super::view::look::Look;
 use super::view::turned::Turned;
-use crate::ends::{shared, wider};
+use crate::ends::{overlap, shared, wider};
 use alone::Alone;
 use bars::Bars;
 use passing::{Passing, Place};
@@ -60,6 +61,8 @@ const OF_ONE_ROW: f64 = 3.0;
 /// Posts leave so much of a bay, in pitches, or more; and of several bays in line no goods all leave a part as small.
 const ONE_BAY: f64 = 0.92;
 const PART_OF_BAY: f64 = 0.8;
+/// What leads through a row at one place has so much of its width in common.
+const SAME: f64 = 0.5;
 /// Drift that turns a wall moves the ends of the rows before it against each other by so much, metres.
 const TURNED: f64 = 1.0;
 
@@ -147,12 +150,19 @@ impl<'a> Context<'a> {
     }
 
     /// True when a strip is no wider than a bay, or as wide as some, and beside it, nearer than racks are deep, one that is left
-    /// leads through the same single row, or past the ends of the same rows.
+    /// leads through the same single row, or past the ends of the same rows. What leads through it at the same place is the same way.
     fn is_last_bay(&self, n: usize, left: &[bool]) -> bool {
         let own = &self.place.passing[n];
+        let is_same = |m: usize| {
+            let [one, other] = [n, m].map(|n| &self.strips[n]);
+            overlap(one.across, other.across) > SAME * one.width().min(other.width())
+        };
         let is_beside = |m: usize| {
             let other = &self.place.passing[m];
-            left[m] && own.rows.iter().all(|row| other.rows.contains(row)) && (own.racks == 1 || !other.is_within)
+            left[m]
+                && !is_same(m)
+                && own.rows.iter().all(|row| other.rows.contains(row))
+                && (own.racks == 1 || !other.is_within)
         };
         own.is_within
             && !own.is_led_on
@@ -338,7 +348,8 @@ impl<'a> Asked<'a> {
     }
 
     /// True when it leads past the ends of several rows, up to one that goes on farther beside them, or up to the wall along it: it
-    /// is as wide as the hall leaves there. Between two that go on it would as well be empty bays of the rows between these.
+    /// is as wide as the hall leaves there. Between two that go on it would as well be empty bays of the rows between these, if chance
+    /// makes such.
     fn is_as_the_hall_leaves(&self) -> bool {
         let &[next] = &self.own.next[..] else { return false };
         let place = self.context.place;
@@ -349,7 +360,8 @@ impl<'a> Asked<'a> {
                 && (!self.may_be_bay_at_wall() || self.expected().is_some_and(|expected| expected < AT_WALL))
                 && self.context.bars.are_bare(self.n)
         };
-        let is_of_bays = || self.is_told_within() && self.may_be_bay();
+        let is_of_bays =
+            || self.is_told_within() && self.may_be_bay() && self.expected().is_none_or(|expected| expected >= SELDOM);
         self.own.rows.len() > 1
             && !self.own.is_within
             && (is_at_wall() || place.goes_past(next, self.strip, FARTHER) && !is_of_bays())
