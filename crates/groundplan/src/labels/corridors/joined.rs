@@ -1,7 +1,7 @@
 //! Pieces of one way: in line, and with nothing in the way from one to the next.
 
 use super::barriers;
-use crate::ends::{around, holds, overlap, shared, sorted};
+use crate::ends::{around, both, holds, overlap, shared, sorted};
 use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::{ASKEW, Strip};
 use crate::labels::rows::SAME;
@@ -9,6 +9,8 @@ use crate::labels::view::turned::Turned;
 use crate::labels::ways::across::crossing;
 use crate::sets::Sets;
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// Pieces share so much of the narrower one's width, which is so much of the wider one's, or where goods stand along one
 /// of them at any depth, so much.
@@ -25,6 +27,8 @@ const UNSEEN: f64 = 0.6;
 const FRAME: f64 = 0.05;
 /// A way lies within another when it shares more than this of its length, and of the narrower one's width.
 const WITHIN: f64 = 0.5;
+/// Ways touch that end so near to each other, metres.
+const TOUCHING: f64 = 0.05;
 /// What stands so near to the sides, in widths, does not bar the way.
 const MARGIN: f64 = 0.1;
 
@@ -90,17 +94,39 @@ pub fn apart(views: &[Turned], mut strips: Vec<Strip>) -> Vec<Strip> {
     strips
 }
 
-/// The ways, of such as begin, end and lie across at one place the first.
+/// The ways, and of such as lie over one another from side to side, or touch end to end, all that they lead along.
 pub fn once(views: &[Turned], strips: &[Strip]) -> Vec<Strip> {
     let placed = placed(views, strips.iter().map(Strip::place));
-    let is_again = |n: usize| {
-        let own = &strips[n];
-        let is_same = |other: &Strip| {
-            other.is_in_line(own, SAME) && (0..2).all(|end| (other.along[end] - own.along[end]).abs() <= SAME)
-        };
-        placed[own.direction].touching(own.along, own.across).into_iter().any(|m| m < n && is_same(&strips[m]))
-    };
-    (0..strips.len()).filter(|&n| !is_again(n)).map(|n| strips[n].clone()).collect()
+    let mut wholes = Sets::new(strips.len());
+    for (n, own) in strips.iter().enumerate() {
+        let over = placed[own.direction]
+            .touching(own.along, own.across)
+            .into_iter()
+            .filter(|&m| m < n && strips[m].is_in_line(own, SAME) && overlap(strips[m].along, own.along) > -TOUCHING);
+        over.for_each(|m| wholes.join_first(n as u32, m as u32));
+    }
+    let mut left: Vec<Strip> = Vec::new();
+    let mut places = BTreeMap::new();
+    for (n, strip) in strips.iter().enumerate() {
+        match places.entry(wholes.of(n as u32)) {
+            Entry::Vacant(entry) => {
+                entry.insert(left.len());
+                left.push(strip.clone());
+            }
+            Entry::Occupied(entry) => lengthen(&mut left[*entry.get()], strip),
+        }
+    }
+    left
+}
+
+/// Leads a way on as far as another one over which it lies.
+fn lengthen(way: &mut Strip, other: &Strip) {
+    for end in 0..2 {
+        if way.along[end] != both(way.along, other.along)[end] {
+            (way.along[end], way.stops[end]) = (other.along[end], other.stops[end]);
+            (way.held[end], way.found[end]) = (other.held[end], other.found[end]);
+        }
+    }
 }
 
 /// True when most of a way's middle, between its own sides, lies on another that runs nearly the same way: one more nearly
