@@ -7,6 +7,8 @@ use crate::labels::corridors::{Strip, UNTOLD};
 use crate::labels::rows::{DEPTH, Row};
 use crate::labels::view::turned::Turned;
 use crate::labels::ways::walled;
+use crate::sets::Sets;
+use std::collections::BTreeMap;
 
 /// A row goes on up to a wall that is so near to its end, metres.
 const NEAR: f64 = 0.3;
@@ -32,6 +34,20 @@ pub struct Seen<'a> {
     pub middles: [f64; 2],
     /// How wide the wider of the two is, metres.
     pub widest: f64,
+}
+
+/// Rows between so many aisles, place by place: they are of one where aisles lie between them.
+pub fn by_place<'a, 'b>(seen: &'a [Seen<'b>], aisles: usize) -> Vec<Vec<&'a Seen<'b>>> {
+    let mut places = Sets::new(aisles);
+    for row in seen {
+        let [one, other] = row.between.map(|aisle| aisle as u32);
+        places.join_first(one, other);
+    }
+    let mut rows: BTreeMap<_, Vec<&Seen>> = BTreeMap::new();
+    for row in seen {
+        rows.entry((row.row.direction, places.of(row.between[0] as u32))).or_default().push(row);
+    }
+    rows.into_values().collect()
 }
 
 impl Seen<'_> {

@@ -2,13 +2,20 @@
 
 use super::sections::{self, FACE, LEFT};
 use crate::labels::rows::Row;
-use crate::labels::view::runs::{Run, common, length, outside, runs};
+use crate::labels::view::runs::{Run, close, common, length, outside, runs};
 use crate::labels::view::turned::Turned;
 use std::cell::OnceCell;
 use std::ops::Range;
 
 /// So many columns on either side of what is open are of its ends.
 pub const ENDS: usize = 2;
+/// What stands so near to a face, metres, or within that share of the row's depth, is of the face and no back. Backs are so
+/// long at least, but for gaps up to that, metres.
+const OFF_FACE: (f64, f64) = (0.35, 0.25);
+const BACK: f64 = 0.5;
+const GAP: f64 = 0.3;
+/// They close what they stand in for more than this share.
+const BACKED: f64 = 0.5;
 
 /// A row, and from which to which of its columns what is open.
 pub struct Shelves {
@@ -19,6 +26,8 @@ pub struct Shelves {
     pub halves: [Vec<Run>; 2],
     /// Where something stands at each face, once it is asked.
     faces: OnceCell<[Vec<Run>; 2]>,
+    /// Where something stands between its open halves, once it is asked.
+    backs: OnceCell<Vec<Run>>,
 }
 
 impl Shelves {
@@ -36,7 +45,7 @@ impl Shelves {
             }
             runs(&open, true)
         });
-        Self { row: row.clone(), columns, halves, faces: OnceCell::new() }
+        Self { row: row.clone(), columns, halves, faces: OnceCell::new(), backs: OnceCell::new() }
     }
 
     /// How many columns it has.
@@ -45,15 +54,40 @@ impl Shelves {
     }
 
     /// Where it is open from aisle to aisle.
-    pub fn open(&self) -> Vec<Run> {
-        common(&self.halves[0], &self.halves[1])
+    pub fn open(&self, view: &Turned) -> Vec<Run> {
+        outside(&common(&self.halves[0], &self.halves[1]), self.backs(view))
+    }
+
+    /// Where both halves are open and something stands all along between them, as backs of racks do.
+    pub fn backs(&self, view: &Turned) -> &[Run] {
+        self.backs.get_or_init(|| {
+            let both = common(&self.halves[0], &self.halves[1]);
+            let [low, high] = self.row.across;
+            let off = OFF_FACE.0.min(OFF_FACE.1 * (high - low));
+            let first = self.columns.start;
+            let of_run = |(from, to): Run| {
+                let stands = view.some_occupied(first + from..first + to, low + off, high - off);
+                let mut stands: Vec<bool> = stands.into_iter().map(|share| share > 0.0).collect();
+                close(&mut stands, (GAP / view.cell).round() as usize);
+                let backs = runs(&stands, true).into_iter().map(move |back| (from + back.0, from + back.1));
+                backs.filter(|back| (back.1 - back.0) as f64 * view.cell >= BACK).collect::<Vec<_>>()
+            };
+            both.into_iter().flat_map(of_run).collect()
+        })
+    }
+
+    /// True when backs close most of it from one place along to another.
+    pub fn is_backed(&self, view: &Turned, along: [f64; 2]) -> bool {
+        let [from, to] = along.map(|u| view.column(u).saturating_sub(self.columns.start).min(self.count()));
+        let within = length(common(self.backs(view), &[(from, to)]));
+        from < to && within as f64 > BACKED * (to - from) as f64
     }
 
     /// The same where no wall runs along it.
     pub fn passable(&self, view: &Turned) -> Vec<Run> {
         let first = self.columns.start;
         let is_walled = |&(from, to): &Run| sections::is_walled(view, &self.row, first + from..first + to);
-        self.open().into_iter().filter(|run| !is_walled(run)).collect()
+        self.open(view).into_iter().filter(|run| !is_walled(run)).collect()
     }
 
     /// How long it is from the first to the last place at which something of it was seen, metres.
@@ -79,7 +113,7 @@ impl Shelves {
             let stands = |face: &[Run]| !common(face, &within).is_empty();
             !self.faces(view).iter().any(|face| stands(face))
         };
-        let left_out: Vec<Run> = self.open().into_iter().filter(is_left_out).collect();
+        let left_out: Vec<Run> = self.open(view).into_iter().filter(is_left_out).collect();
         let open = left_out.iter().filter(|run| !self.is_end(**run)).count();
         let wider = |(from, to): Run| (from.saturating_sub(ENDS), (to + ENDS).min(self.count()));
         Elsewhere { shelves: self, open, left_out: left_out.into_iter().map(wider).collect() }

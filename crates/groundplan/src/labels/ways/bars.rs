@@ -228,11 +228,16 @@ impl<'a> Bars<'a> {
         self.place.passing[n].rows.iter().all(|&row| self.row(row).columns.is_bare(self.sides(n, row)))
     }
 
-    /// True when posts that stand within what one of the strips passes through part it in each of the rows, between their ends:
-    /// it is an empty bay and a part of the next.
+    /// True when posts that stand within what one of the strips passes through part it in each of the rows, between their ends, where
+    /// it is an empty bay and a part of the next, or that backs of racks close it there.
     pub fn are_parted(&self, n: usize) -> bool {
         let own = &self.place.passing[n];
-        own.is_within && own.rows.iter().all(|&row| self.is_parted_in(n, row))
+        own.is_within && own.rows.iter().all(|&row| self.is_parted_in(n, row) || self.is_backed(n, row))
+    }
+
+    /// True when backs of racks stand across a strip in one row.
+    fn is_backed(&self, n: usize, row: usize) -> bool {
+        self.place.shelves(row).is_backed(self.place.views[0], self.sides(n, row))
     }
 
     /// True when posts part a strip in one row, were it so long, into pieces none of which is wider than a bay.
@@ -240,11 +245,11 @@ impl<'a> Bars<'a> {
         self.row(row).columns.is_parted(self.sides(n, row))
     }
 
-    /// One of the strips without the rows in which posts stand between its sides and bars beside it are missed: it is in
-    /// pieces then, and where the next row is such a one it stops. Nothing where it stays as it is.
+    /// One of the strips without the rows in which posts stand between its sides and bars beside it are missed, or that backs of
+    /// racks close: it is in pieces then, and where the next row is such a one it stops. Nothing where it stays as it is.
     pub fn cut(&self, n: usize) -> Option<Vec<Strip>> {
         let (own, strip) = (&self.place.passing[n], &self.strips[n]);
-        if !own.is_within || self.place.pitch_of(own).is_none() {
+        if !own.is_within {
             return None;
         }
         let mut ends = strip.stops;
@@ -270,13 +275,15 @@ impl<'a> Bars<'a> {
         Some(pieces)
     }
 
-    /// True when a strip leads over an empty bay of a row, by its posts, and where they do not part it by the bars. What costs
-    /// least is asked first.
+    /// True when a strip leads over an empty bay of a row, by its back or by its posts, and where they do not part it by the bars.
+    /// What costs least is asked first.
     fn has_bay(&self, n: usize, row: usize) -> bool {
         // What would part one that leads through all rows of a place was left in it.
         let is_parted = || !self.place.passing[n].is_whole() && self.is_parted_in(n, row);
         let by_bars = || self.row(row).columns.posts_between(self.sides(n, row)) && self.is_bay(n, &[row]);
-        self.lead(n, row).is_within() && self.passes_by(n, row) && (is_parted() || by_bars())
+        let is_known = || self.place.pitch_of(&self.place.passing[n]).is_some();
+        self.lead(n, row).is_within()
+            && (self.is_backed(n, row) || is_known() && self.passes_by(n, row) && (is_parted() || by_bars()))
     }
 
     /// True when bays are known, and what some rows have between the sides of a strip is one by the bars.

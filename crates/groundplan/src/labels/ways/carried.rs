@@ -10,6 +10,7 @@ use crate::labels::Evidence;
 use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::Strip;
 use crate::labels::rows::sections::Columns;
+use crate::labels::rows::shelves::Shelves;
 use crate::labels::rows::{Row, SHORTEST};
 use crate::labels::view::look::Look;
 use crate::labels::view::turned::Turned;
@@ -115,12 +116,14 @@ impl Lead<'_> {
         !others.into_iter().any(|n| n != own && is_there(&strips[n]))
     }
 
-    /// True when it would lie between the row's ends, and nothing stands there, or goods between the ends of racks.
+    /// True when it would lie between the row's ends, no backs of racks close it, and nothing stands there, or goods between the
+    /// ends of racks.
     fn is_free(&self, evidence: &Evidence, look: &Look) -> bool {
         let columns =
             || Columns::new(look, &evidence.grid.frame, self.views, self.row, self.views[0].pitch_of(self.row));
         let is_free = |columns: Columns| columns.is_free(self.sides()) || columns.is_free_beside_goods(self.sides());
-        self.is_within() && is_free(columns())
+        let is_backed = || Shelves::new(self.views[0], self.row).is_backed(self.views[0], self.sides());
+        self.is_within() && is_free(columns()) && !is_backed()
     }
 
     /// True when the map shows floor where it would lead through the row, and no leg.

@@ -67,7 +67,7 @@ fn expected_of(place: &Place, strips: &[Strip], n: usize, are_bare: bool) -> Opt
 fn widest_within(place: &Place, strip: &Strip, row: usize) -> f64 {
     let [from, to] = columns(place, strip, row, 0.0);
     let within = |(first, last): Run| last.min(to).saturating_sub(first.max(from));
-    let widest = place.shelves(row).open().into_iter().map(within).max().unwrap_or(0);
+    let widest = place.shelves(row).open(place.views[0]).into_iter().map(within).max().unwrap_or(0);
     widest as f64 * place.views[0].cell / seldom::AS_WIDE
 }
 
@@ -95,7 +95,7 @@ fn open_without(
     ways.retain(|(from, to)| from < to);
     ways.sort_unstable();
     let least = (seldom::AS_WIDE * width / place.views[0].cell) as usize;
-    let mut open = shelves.open();
+    let mut open = shelves.open(place.views[0]);
     if are_bare {
         open = shelves.faces(place.views[0]).iter().fold(open, |open, face| outside(&open, face));
     }

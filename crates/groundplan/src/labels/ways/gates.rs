@@ -1,6 +1,7 @@
 //! Ways through rows of racks: gates, which are too short to be known by walls of their own.
 
 use super::across::crossing;
+use super::backed;
 use super::bars;
 use super::empties;
 use super::hollow;
@@ -84,7 +85,9 @@ pub fn find<'a>(evidence: &Evidence, look: &Look, views: &[Turned], strips: &'a 
     // What the faces of rows show: posts that are missing, and gaps in what is solid. A row that a known way cuts is solid in each
     // of its pieces.
     let mut by_faces = unposted::find(whole.as_ref().unwrap_or(&through).rows(), strips.len());
-    by_faces.retain(|gate| !strips.iter().any(|way| is_in(gate, way)));
+    let is_in_way = |gate: &Strip| strips.iter().any(|way| is_in(gate, way));
+    by_faces.retain(|gate| !is_in_way(gate));
+    by_faces.extend(backed::find(whole.as_ref().unwrap_or(&through).rows(), strips.len(), is_in_way));
     let mut hollow = hollow::find(through.rows());
     for (gate, is_as_a_bay) in through.at_walls(strips, &placed) {
         let found = if is_as_a_bay { &mut at_walls } else { &mut gates };

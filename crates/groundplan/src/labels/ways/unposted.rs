@@ -3,11 +3,10 @@
 
 use crate::labels::corridors::Strip;
 use crate::labels::rows::sections::WIDTH;
-use crate::labels::rows::seen::Seen;
+use crate::labels::rows::seen::{self, Seen};
 use crate::labels::rows::shelves::Shelves;
 use crate::labels::view::runs::Run;
 use crate::labels::view::turned::Turned;
-use crate::sets::Sets;
 use std::collections::BTreeMap;
 
 /// Gaps differ by no more than so many columns where they are alike.
@@ -28,19 +27,10 @@ const EXPECTED: f64 = 0.05;
 const SHARE: usize = 4;
 const SEVERAL: usize = 3;
 
-/// The ways in which posts are missing through rows between so many aisles, place by place: rows are of one where aisles lie
-/// between them.
+/// The ways in which posts are missing through rows between so many aisles, place by place.
 pub fn find(seen: &[Seen], aisles: usize) -> Vec<Strip> {
-    let mut places = Sets::new(aisles);
-    for row in seen {
-        let [one, other] = row.between.map(|aisle| aisle as u32);
-        places.join_first(one, other);
-    }
-    let mut rows: BTreeMap<_, Vec<(&Seen, Gaps)>> = BTreeMap::new();
-    for row in seen {
-        rows.entry((row.row.direction, places.of(row.between[0] as u32))).or_default().push((row, Gaps::of(row)));
-    }
-    rows.into_values().flat_map(|rows| among(&rows)).collect()
+    let of_place = |rows: Vec<&Seen>| among(&rows.iter().map(|row| (*row, Gaps::of(row))).collect::<Vec<_>>());
+    seen::by_place(seen, aisles).into_iter().flat_map(of_place).collect()
 }
 
 fn among(rows: &[(&Seen, Gaps)]) -> Vec<Strip> {
