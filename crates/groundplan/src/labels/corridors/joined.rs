@@ -1,7 +1,7 @@
 //! Pieces of one way: in line, and with nothing in the way from one to the next.
 
 use super::barriers;
-use crate::ends::{around, both, holds, overlap, shared, sorted};
+use crate::ends::{around, holds, overlap, shared, sorted};
 use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::{ASKEW, Strip};
 use crate::labels::rows::SAME;
@@ -9,8 +9,6 @@ use crate::labels::view::turned::Turned;
 use crate::labels::ways::across::crossing;
 use crate::sets::Sets;
 use std::cmp::Ordering;
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 
 /// Pieces share so much of the narrower one's width, which is so much of the wider one's, or where goods stand along one
 /// of them at any depth, so much.
@@ -105,27 +103,23 @@ pub fn once(views: &[Turned], strips: &[Strip]) -> Vec<Strip> {
             .filter(|&m| m < n && strips[m].is_in_line(own, SAME) && overlap(strips[m].along, own.along) > -TOUCHING);
         over.for_each(|m| wholes.join_first(n as u32, m as u32));
     }
-    let mut left: Vec<Strip> = Vec::new();
-    let mut places = BTreeMap::new();
-    for (n, strip) in strips.iter().enumerate() {
-        match places.entry(wholes.of(n as u32)) {
-            Entry::Vacant(entry) => {
-                entry.insert(left.len());
-                left.push(strip.clone());
-            }
-            Entry::Occupied(entry) => lengthen(&mut left[*entry.get()], strip),
+    let (numbers, count) = wholes.numbered();
+    let mut left: Vec<Option<Strip>> = vec![None; count];
+    for (strip, number) in strips.iter().zip(numbers) {
+        match &mut left[number as usize - 1] {
+            Some(way) => lengthen(way, strip),
+            whole => *whole = Some(strip.clone()),
         }
     }
-    left
+    left.into_iter().flatten().collect()
 }
 
 /// Leads a way on as far as another one over which it lies.
 fn lengthen(way: &mut Strip, other: &Strip) {
-    for end in 0..2 {
-        if way.along[end] != both(way.along, other.along)[end] {
-            (way.along[end], way.stops[end]) = (other.along[end], other.stops[end]);
-            (way.held[end], way.found[end]) = (other.held[end], other.found[end]);
-        }
+    let is_farther = [other.along[0] < way.along[0], other.along[1] > way.along[1]];
+    for end in (0..2).filter(|&end| is_farther[end]) {
+        (way.along[end], way.stops[end]) = (other.along[end], other.stops[end]);
+        (way.held[end], way.found[end]) = (other.held[end], other.found[end]);
     }
 }
 

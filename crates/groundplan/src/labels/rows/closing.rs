@@ -21,12 +21,14 @@ const FLUE: f64 = 0.3;
 const STEP: f64 = 0.05;
 
 /// How a row is closed at a place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Closing {
     Open,
     /// From one face to its middle, as one of two racks that stand back to back does.
     Half,
     Whole,
+    /// Whole, and nothing parts it about its middle, as a flue parts what stands in two racks.
+    Sheet,
 }
 
 /// The lines across a row along which something may close it: they lean as the direction does that crosses it.
@@ -62,13 +64,17 @@ impl LinesAcross<'_> {
             |stands: &[bool]| stands.iter().filter(|stands| **stands).count() as f64 >= FRAME.1 * stands.len() as f64;
         let mut closing = Closing::Open;
         for lines in lines.windows(2 * near + 1) {
-            let stands = standing(lines, count, holes);
-            if is_closed(&stands) {
-                return Closing::Whole;
-            }
+            let (stands, is_parted) = standing(lines, count, holes);
             let half = (count / 2).max(1);
-            if is_closed(&stands[..half]) || is_closed(&stands[count - half..]) {
-                closing = Closing::Half;
+            closing = closing.max(if is_closed(&stands) {
+                if is_parted { Closing::Whole } else { Closing::Sheet }
+            } else if is_closed(&stands[..half]) || is_closed(&stands[count - half..]) {
+                Closing::Half
+            } else {
+                Closing::Open
+            });
+            if closing == Closing::Sheet {
+                break;
             }
         }
         closing
@@ -84,11 +90,14 @@ impl LinesAcross<'_> {
     }
 }
 
-/// At which of the samples across something stands on one of some lines, but for holes of so many.
-fn standing(lines: &[Vec<u8>], count: usize, holes: usize) -> Vec<bool> {
+/// At which of the samples across something stands on one of some lines, but for holes of so many; and whether a flue parts it.
+fn standing(lines: &[Vec<u8>], count: usize, holes: usize) -> (Vec<bool>, bool) {
     // What stands at the faces holds the ends.
     let mut stands = vec![true; count + 2];
     (0..count).for_each(|k| stands[k + 1] = lines.iter().any(|line| line[k] > BLOCKED));
+    // Where two racks stand back to back, each is a third of both at least.
+    let middle = count / 3..count - count / 3;
+    let is_parted = stands[1..][middle.clone()].contains(&false);
     close(&mut stands, holes);
     let is_unseen = |k: usize| lines.iter().any(|line| line[k - 1] == BLOCKED);
     for (from, to) in runs(&stands, false) {
@@ -97,7 +106,6 @@ fn standing(lines: &[Vec<u8>], count: usize, holes: usize) -> Vec<bool> {
         }
     }
     let mut stands = stands[1..=count].to_vec();
-    // Where two racks stand back to back, each is a third of both at least.
-    close(&mut stands[count / 3..count - count / 3], (FLUE / STEP).round() as usize);
-    stands
+    close(&mut stands[middle], (FLUE / STEP).round() as usize);
+    (stands, is_parted)
 }

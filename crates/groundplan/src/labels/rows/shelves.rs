@@ -28,6 +28,8 @@ pub struct Shelves {
     faces: OnceCell<[Vec<Run>; 2]>,
     /// Where something stands between its open halves, once it is asked.
     backs: OnceCell<Vec<Run>>,
+    /// Where it is open from aisle to aisle, once it is asked.
+    open: OnceCell<Vec<Run>>,
 }
 
 impl Shelves {
@@ -45,7 +47,14 @@ impl Shelves {
             }
             runs(&open, true)
         });
-        Self { row: row.clone(), columns, halves, faces: OnceCell::new(), backs: OnceCell::new() }
+        Self {
+            row: row.clone(),
+            columns,
+            halves,
+            faces: OnceCell::new(),
+            backs: OnceCell::new(),
+            open: OnceCell::new(),
+        }
     }
 
     /// How many columns it has.
@@ -54,8 +63,15 @@ impl Shelves {
     }
 
     /// Where it is open from aisle to aisle.
-    pub fn open(&self, view: &Turned) -> Vec<Run> {
-        outside(&common(&self.halves[0], &self.halves[1]), self.backs(view))
+    pub fn open(&self, view: &Turned) -> &[Run] {
+        self.open.get_or_init(|| outside(&common(&self.halves[0], &self.halves[1]), self.backs(view)))
+    }
+
+    /// Where it is, and no wall runs along it.
+    pub fn passable(&self, view: &Turned) -> Vec<Run> {
+        let first = self.columns.start;
+        let is_walled = |&(from, to): &Run| sections::is_walled(view, &self.row, first + from..first + to);
+        self.open(view).iter().copied().filter(|run| !is_walled(run)).collect()
     }
 
     /// Where both halves are open and something stands all along between them, as backs of racks do.
@@ -83,13 +99,6 @@ impl Shelves {
         from < to && within as f64 > BACKED * (to - from) as f64
     }
 
-    /// The same where no wall runs along it.
-    pub fn passable(&self, view: &Turned) -> Vec<Run> {
-        let first = self.columns.start;
-        let is_walled = |&(from, to): &Run| sections::is_walled(view, &self.row, first + from..first + to);
-        self.open(view).into_iter().filter(|run| !is_walled(run)).collect()
-    }
-
     /// How long it is from the first to the last place at which something of it was seen, metres.
     pub fn seen(&self, view: &Turned) -> f64 {
         let seen = self.halves.iter().chain(self.faces(view)).flatten();
@@ -113,7 +122,7 @@ impl Shelves {
             let stands = |face: &[Run]| !common(face, &within).is_empty();
             !self.faces(view).iter().any(|face| stands(face))
         };
-        let left_out: Vec<Run> = self.open(view).into_iter().filter(is_left_out).collect();
+        let left_out: Vec<Run> = self.open(view).iter().copied().filter(is_left_out).collect();
         let open = left_out.iter().filter(|run| !self.is_end(**run)).count();
         let wider = |(from, to): Run| (from.saturating_sub(ENDS), (to + ENDS).min(self.count()));
         Elsewhere { shelves: self, open, left_out: left_out.into_iter().map(wider).collect() }

@@ -52,5 +52,5 @@ fn gates(row: &Seen, shelves: &Shelves) -> Vec<Strip> {
         let ends = [from, to].map(|n| view.along(first + n));
         (WIDTH.0 - view.cell..=WIDTH.1).contains(&(ends[1] - ends[0])).then(|| row.gate(ends)).flatten()
     };
-    shelves.open(view).into_iter().filter_map(gate).collect()
+    shelves.open(view).iter().copied().filter_map(gate).collect()
 }

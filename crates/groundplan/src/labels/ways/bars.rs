@@ -3,12 +3,14 @@
 
 use super::lead::Lead;
 use super::passing::Place;
+use super::seldom;
 use super::walled;
 use crate::ends::{overlap, wider};
 use crate::labels::Evidence;
 use crate::labels::corridors::Strip;
 use crate::labels::junctions::meeting::CLUTTER;
 use crate::labels::rows::SHORTEST;
+use crate::labels::rows::closing::Closing;
 use crate::labels::rows::sections::{Columns, SIDE};
 use crate::labels::view::look::Look;
 use std::cell::OnceCell;
@@ -34,6 +36,8 @@ const IN_LINE: f64 = 0.5;
 const LIKELIER: f64 = 10.0;
 /// Where racks end is sought in such steps, metres.
 const STEP: f64 = 0.1;
+/// Rows that are closed at so many ends end at sheets where so large a share of these are.
+const SHEETS: (u32, f64) = (2, 0.7);
 
 /// Which of some strips lie between bars, from one on; of all the places are known that they lead through.
 pub fn are_between(evidence: &Evidence, look: &Look, places: &[Place], strips: &[Strip], first: usize) -> Vec<bool> {
@@ -83,27 +87,58 @@ impl Sum for Often {
     }
 }
 
-/// How often bars stand at the sides of something, at the rows' ends in its part of the place, and beside bays there.
-struct Told {
-    sides: Often,
+/// What a bar is in a part of a place, and how often they stand at the rows' ends there, and beside bays.
+#[derive(Clone, Copy)]
+struct Part {
+    bar: Closing,
     ends: Often,
     bays: Often,
+}
+
+impl Part {
+    fn new<'a>(rows: impl Iterator<Item = &'a Closed<'a>> + Clone) -> Self {
+        let ends = || rows.clone().flat_map(|row| row.ends.iter().copied());
+        let closed = Often::of(ends().map(|end| end >= Closing::Whole)).closed;
+        let sheets = Often::of(ends().map(|end| end == Closing::Sheet)).closed;
+        let are_sheets = closed >= SHEETS.0 && f64::from(sheets) >= SHEETS.1 * f64::from(closed);
+        let bar = if are_sheets { Closing::Sheet } else { Closing::Whole };
+        // Between two bars a way may lie that is not known.
+        let bays = rows.clone().flat_map(|row| &row.bays).filter(|sides| sides.iter().any(|side| *side < bar));
+        let is_bar = |side: Closing| side >= bar;
+        Self { bar, ends: Often::of(ends().map(is_bar)), bays: Often::of(bays.flatten().copied().map(is_bar)) }
+    }
+
+    /// How often bars stand at some sides.
+    fn often(self, sides: impl IntoIterator<Item = Closing>) -> Often {
+        Often::of(sides.into_iter().map(|side| side >= self.bar))
+    }
+}
+
+/// How often bars stand at the sides of something, and what they do in its part of the place.
+struct Told {
+    sides: Often,
+    part: Part,
 }
 
 impl Told {
     /// They stand there as at rows' ends.
     fn is_way(&self) -> bool {
-        self.sides.is_as(self.ends, self.bays)
+        self.sides.is_as(self.part.ends, self.part.bays)
     }
 
     /// They stand at all sides, and at most ends.
     fn is_closed(&self) -> bool {
-        self.sides.open == 0 && self.ends.closed > self.ends.open
+        self.sides.open == 0 && self.part.ends.closed > self.part.ends.open
+    }
+
+    /// Sheets do: goods of two racks seldom stand so.
+    fn is_between_sheets(&self) -> bool {
+        self.part.bar == Closing::Sheet && self.is_closed()
     }
 
     /// None stands there, as beside bays.
     fn is_bay(&self) -> bool {
-        self.sides.closed == 0 && self.sides.is_as(self.bays, self.ends)
+        self.sides.closed == 0 && self.sides.is_as(self.part.bays, self.part.ends)
     }
 }
 
@@ -114,15 +149,29 @@ pub struct Bars<'a> {
     place: &'a Place<'a>,
     strips: &'a [Strip],
     rows: Vec<OnceCell<Closed<'a>>>,
-    /// How often something closes the sides of each strip in all rows that it passes through, once it is asked.
-    closed: Vec<OnceCell<Often>>,
+    /// How the sides of each strip are closed in all rows that it passes through, once it is asked.
+    closed: Vec<OnceCell<Vec<Closing>>>,
 }
 
-/// A row, and how often it is closed at its ends, but for those at walls, and beside what is free of it and no way.
+/// A row, and how it is closed at its ends, but for those at walls, and on both sides of what is free of it and no way.
 struct Closed<'a> {
     columns: Columns<'a>,
-    ends: Often,
-    bays: Often,
+    /// Of two racks: what no flue parts is a sheet there.
+    is_double: bool,
+    ends: Vec<Closing>,
+    bays: Vec<[Closing; 2]>,
+}
+
+impl Closed<'_> {
+    /// How the row is closed at a place along.
+    fn closing_at(&self, along: f64) -> Closing {
+        of_racks(self.is_double, self.columns.closing_at(along))
+    }
+}
+
+/// How one or two racks are closed: one has no flue that would part a sheet.
+fn of_racks(are_two: bool, closing: Closing) -> Closing {
+    if closing == Closing::Whole && !are_two { Closing::Sheet } else { closing }
 }
 
 impl<'a> Bars<'a> {
@@ -158,6 +207,9 @@ impl<'a> Bars<'a> {
         let Some(told) = self.told(n, &own.rows).filter(|told| may_be && told.sides.open == 0) else {
             return false;
         };
+        if self.place.are_double(own) && told.is_between_sheets() {
+            return true;
+        }
         let Some(part) = self.place.first_of(own).map(|row| self.place.rows_with(row)) else { return false };
         let is_alike = |&m: &usize| {
             let other = &self.place.passing[m];
@@ -168,7 +220,7 @@ impl<'a> Bars<'a> {
                 && other.rows.iter().all(|row| part.contains(row))
         };
         let others: Vec<usize> = (0..self.strips.len()).filter(is_alike).collect();
-        let sides = told.sides.and(others.iter().map(|&m| self.closed(m)).sum());
+        let sides = told.sides.and(others.iter().map(|&m| told.part.often(self.closed(m).iter().copied())).sum());
         let is_of_two_racks = |m: &&usize| self.place.are_double(&self.place.passing[**m]);
         let double = iter::once(&n).chain(&others).filter(is_of_two_racks).count();
         others.len() >= OTHERS && DOUBLE * double > others.len() && Told { sides, ..told }.is_way()
@@ -181,7 +233,7 @@ impl<'a> Bars<'a> {
 
     /// True when they do, and beside no bay.
     pub fn stand_beside_no_bays(&self, n: usize) -> bool {
-        self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_closed() && told.bays.closed == 0)
+        self.told(n, &self.place.passing[n].rows).is_some_and(|told| told.is_closed() && told.part.bays.closed == 0)
     }
 
     /// True when each of the rows whose ends one of the strips leads past ends there at a bar, as most do in that part of the
@@ -189,7 +241,7 @@ impl<'a> Bars<'a> {
     pub fn end_rows_before(&self, n: usize) -> bool {
         let own = &self.place.passing[n];
         let Some(first) = self.place.first_of(own).filter(|_| !own.is_within) else { return false };
-        let [ends, bays] = self.ends_and_bays(first);
+        let Part { ends, bays, .. } = self.part_with(first);
         bays.closed == 0 && ends.closed > ends.open && self.are_before_bars(n, 0.0)
     }
 
@@ -233,6 +285,20 @@ impl<'a> Bars<'a> {
     pub fn are_parted(&self, n: usize) -> bool {
         let own = &self.place.passing[n];
         own.is_within && own.rows.iter().all(|&row| self.is_parted_in(n, row) || self.is_backed(n, row))
+    }
+
+    /// True when one of the strips is as wide as bays of two racks, and in each of its rows a flue parts what closes a side, where
+    /// rows end at sheets.
+    pub fn is_beside_flues(&self, n: usize) -> bool {
+        let own = &self.place.passing[n];
+        let first = self.place.first_of(own).filter(|_| own.is_within && self.place.pitch_of(own).is_some());
+        let is_flued = |&row: &usize| {
+            let sides = self.sides(n, row).map(|side| self.row(row).closing_at(side));
+            sides.contains(&Closing::Whole)
+        };
+        self.place.is_as_bays(own, self.strips[n].width())
+            && own.rows.iter().all(is_flued)
+            && first.is_some_and(|first| self.part_with(first).bar == Closing::Sheet)
     }
 
     /// True when backs of racks stand across a strip in one row.
@@ -294,29 +360,27 @@ impl<'a> Bars<'a> {
     /// What bars tell of a strip in some rows, where it passes between rows' ends.
     fn told(&self, n: usize, rows: &[usize]) -> Option<Told> {
         let first = self.place.first_of(&self.place.passing[n]).filter(|_| self.place.passing[n].is_within)?;
-        let [ends, bays] = self.ends_and_bays(first);
+        let part = self.part_with(first);
         let is_all = rows == self.place.passing[n].rows;
-        let sides = if is_all { self.closed(n) } else { self.closed_in(n, rows) };
-        Some(Told { sides, ends, bays })
+        let sides =
+            if is_all { part.often(self.closed(n).iter().copied()) } else { part.often(self.closed_in(n, rows)) };
+        Some(Told { sides, part })
     }
 
-    /// How often the rows that one of the strips passes through are closed at its sides.
-    fn closed(&self, n: usize) -> Often {
-        *self.closed[n].get_or_init(|| self.closed_in(n, &self.place.passing[n].rows))
+    /// How the rows that one of the strips passes through are closed at its sides.
+    fn closed(&self, n: usize) -> &[Closing] {
+        self.closed[n].get_or_init(|| self.closed_in(n, &self.place.passing[n].rows))
     }
 
     /// The same of some rows.
-    fn closed_in(&self, n: usize, rows: &[usize]) -> Often {
-        let sides = |&row: &usize| {
-            Often::of(self.sides(n, row).into_iter().map(|side| self.row(row).columns.is_closed_at(side)))
-        };
-        rows.iter().map(sides).sum()
+    fn closed_in(&self, n: usize, rows: &[usize]) -> Vec<Closing> {
+        rows.iter().flat_map(|&row| self.sides(n, row).map(|side| self.row(row).closing_at(side))).collect()
     }
 
-    /// How often the rows are closed at their ends, and beside bays, in the part of the place that a row is of.
-    fn ends_and_bays(&self, row: usize) -> [Often; 2] {
-        let part: Vec<&Closed> = self.place.rows_with(row).into_iter().map(|row| self.row(row)).collect();
-        [part.iter().map(|row| row.ends).sum(), part.iter().map(|row| row.bays).sum()]
+    /// The part of the place that a row is of.
+    fn part_with(&self, row: usize) -> Part {
+        let rows = self.place.rows_with(row);
+        Part::new(rows.iter().map(|&row| self.row(row)))
     }
 
     /// A strip across a row.
@@ -383,12 +447,12 @@ impl<'a> Bars<'a> {
             }
         });
         let own = row.along.into_iter().filter(|&end| !is_of_way([end; 2])).chain(known);
-        let ends = Often::of(own.filter(|&end| !is_at_wall(end)).map(|end| columns.is_closed_at(end)));
-        let free = columns.free().into_iter().filter(|&(ends, _)| !is_of_way(ends));
-        // Between two bars a way may lie that is not known.
-        let closed = |sides: [bool; 2]| if sides == [true; 2] { Often::default() } else { Often::of(sides) };
-        let bays = free.map(|(_, sides)| closed(sides)).sum();
-        Closed { columns, ends, bays }
+        let is_double = seldom::is_double(row);
+        let of_racks = |closing: Closing| of_racks(is_double, closing);
+        let ends = own.filter(|&end| !is_at_wall(end)).map(|end| of_racks(columns.closing_at(end))).collect();
+        let free = columns.free().into_iter().filter(|(ends, _)| !is_of_way(*ends));
+        let bays = free.map(|(_, closed)| closed.map(of_racks)).collect();
+        Closed { columns, is_double, ends, bays }
     }
 }
 

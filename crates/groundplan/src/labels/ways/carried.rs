@@ -10,7 +10,6 @@ use crate::labels::Evidence;
 use crate::labels::beside::{Beside, placed};
 use crate::labels::corridors::Strip;
 use crate::labels::rows::sections::Columns;
-use crate::labels::rows::shelves::Shelves;
 use crate::labels::rows::{Row, SHORTEST};
 use crate::labels::view::look::Look;
 use crate::labels::view::turned::Turned;
@@ -35,9 +34,9 @@ pub fn on(evidence: &Evidence, look: &Look, views: &[Turned], mut strips: Vec<St
 /// The strips, those across rows through the next one on either side.
 fn a_row_on(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip]) -> Vec<Strip> {
     let mut longer = strips.to_vec();
-    each(views, strips, |n, lead, middles| {
-        if lead.is_free(evidence, look) {
-            longer[n].along = both(longer[n].along, lead.along(middles));
+    each(views, strips, |next| {
+        if next.lead.is_free(evidence, look) && !next.is_backed() {
+            longer[next.strip].along = next.led_on(longer[next.strip].along);
         }
     });
     longer
@@ -49,10 +48,10 @@ pub fn without_ways(evidence: &Evidence, views: &[Turned], strips: &[Strip], on_
     let (mut racks, mut strips) = (on_legs.to_vec(), strips.to_vec());
     while !racks.is_empty() {
         let mut longer = strips.clone();
-        each(views, &strips, |n, lead, middles| {
-            if lead.is_within() && lead.shows_floor(evidence) {
-                longer[n].along = both(longer[n].along, lead.along(middles));
-                racks = racks.iter().flat_map(|rack| lead.left_of(rack)).collect();
+        each(views, &strips, |next| {
+            if next.lead.is_within() && next.lead.shows_floor(evidence) {
+                longer[next.strip].along = next.led_on(longer[next.strip].along);
+                racks = racks.iter().flat_map(|rack| next.lead.left_of(rack)).collect();
             }
         });
         if longer == strips {
@@ -78,16 +77,39 @@ pub fn left_beside(views: &[Turned], strips: &[Strip], on_legs: &[Row]) -> Vec<R
     racks
 }
 
-/// Of all strips that lead through rows and end before another one, through which none leads there: the number of each, with
-/// the row before it, and the middles of the aisles beside that.
-fn each(views: &[Turned], strips: &[Strip], mut tell: impl FnMut(usize, &Lead, [f64; 2])) {
+/// A strip that leads through rows and ends before another one, through which none leads there.
+struct Next<'a> {
+    strip: usize,
+    place: &'a Place<'a>,
+    row: usize,
+    lead: Lead<'a>,
+    /// Of the aisles beside the row.
+    middles: [f64; 2],
+}
+
+impl Next<'_> {
+    /// From where to where it leads along, when it leads through the row too.
+    fn led_on(&self, along: [f64; 2]) -> [f64; 2] {
+        both(along, self.lead.along(self.middles))
+    }
+
+    /// True when backs of racks close the row there.
+    fn is_backed(&self) -> bool {
+        self.place.shelves(self.row).is_backed(self.lead.views[0], self.lead.sides())
+    }
+}
+
+/// Tells of each such strip and row.
+fn each(views: &[Turned], strips: &[Strip], mut tell: impl FnMut(Next)) {
     let placed = placed(views, strips.iter().map(Strip::place));
-    for Place { views, aisles, rows, passing, .. } in Place::of_each(views, strips) {
-        for (n, own) in passing.iter().enumerate().filter(|(_, own)| own.rows.len() >= ROWS) {
-            for (row, between) in own.next.iter().map(|&m| &rows[m]) {
-                let lead = Lead { views, row, strip: &strips[n] };
+    for place in &Place::of_each(views, strips) {
+        for (n, own) in place.passing.iter().enumerate().filter(|(_, own)| own.rows.len() >= ROWS) {
+            for &number in &own.next {
+                let (row, between) = &place.rows[number];
+                let lead = Lead { views: place.views, row, strip: &strips[n] };
                 if lead.is_alone(n, strips, &placed) {
-                    tell(n, &lead, between.map(|aisle| strips[aisles[aisle]].middle()));
+                    let middles = between.map(|aisle| strips[place.aisles[aisle]].middle());
+                    tell(Next { strip: n, place, row: number, lead, middles });
                 }
             }
         }
@@ -116,14 +138,12 @@ impl Lead<'_> {
         !others.into_iter().any(|n| n != own && is_there(&strips[n]))
     }
 
-    /// True when it would lie between the row's ends, no backs of racks close it, and nothing stands there, or goods between the
-    /// ends of racks.
+    /// True when it would lie between the row's ends, and nothing stands there, or goods between the ends of racks.
     fn is_free(&self, evidence: &Evidence, look: &Look) -> bool {
         let columns =
             || Columns::new(look, &evidence.grid.frame, self.views, self.row, self.views[0].pitch_of(self.row));
         let is_free = |columns: Columns| columns.is_free(self.sides()) || columns.is_free_beside_goods(self.sides());
-        let is_backed = || Shelves::new(self.views[0], self.row).is_backed(self.views[0], self.sides());
-        self.is_within() && is_free(columns()) && !is_backed()
+        self.is_within() && is_free(columns())
     }
 
     /// True when the map shows floor where it would lead through the row, and no leg.

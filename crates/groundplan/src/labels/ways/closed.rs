@@ -61,7 +61,7 @@ pub fn is_way(place: &Place, strips: &[Strip], own: &Passing, width: f64) -> boo
 fn standing(place: &Place, row: usize, least: f64) -> Vec<f64> {
     let (cell, shelves) = (place.views[0].cell, place.shelves(row));
     // What is open up to a row's end is before it, however short.
-    let mut open = shelves.open(place.views[0]);
+    let mut open = shelves.open(place.views[0]).to_vec();
     open.retain(|&(from, to)| shelves.is_end((from, to)) || (to - from) as f64 >= AS_WIDE * least / cell);
     let has_gaps = open.iter().any(|&run| !shelves.is_end(run));
     let standing = if has_gaps { outside(&[(0, shelves.count())], &open) } else { Vec::new() };

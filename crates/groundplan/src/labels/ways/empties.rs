@@ -6,6 +6,7 @@ use super::seldom;
 use super::widths::are_alike;
 use crate::labels::corridors::Strip;
 use crate::labels::view::runs::{Run, length, outside};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 /// Of rows some bays are empty when so much of them is open as wide, besides their ways.
@@ -67,7 +68,7 @@ fn expected_of(place: &Place, strips: &[Strip], n: usize, are_bare: bool) -> Opt
 fn widest_within(place: &Place, strip: &Strip, row: usize) -> f64 {
     let [from, to] = columns(place, strip, row, 0.0);
     let within = |(first, last): Run| last.min(to).saturating_sub(first.max(from));
-    let widest = place.shelves(row).open(place.views[0]).into_iter().map(within).max().unwrap_or(0);
+    let widest = place.shelves(row).open(place.views[0]).iter().copied().map(within).max().unwrap_or(0);
     widest as f64 * place.views[0].cell / seldom::AS_WIDE
 }
 
@@ -95,9 +96,9 @@ fn open_without(
     ways.retain(|(from, to)| from < to);
     ways.sort_unstable();
     let least = (seldom::AS_WIDE * width / place.views[0].cell) as usize;
-    let mut open = shelves.open(place.views[0]);
+    let mut open = Cow::Borrowed(shelves.open(place.views[0]));
     if are_bare {
-        open = shelves.faces(place.views[0]).iter().fold(open, |open, face| outside(&open, face));
+        open = shelves.faces(place.views[0]).iter().fold(open, |open, face| Cow::Owned(outside(&open, face)));
     }
     let wide = outside(&open, &ways).into_iter().filter(|(from, to)| to - from >= least);
     [length(wide), length(outside(&[(0, shelves.count())], &ways))]

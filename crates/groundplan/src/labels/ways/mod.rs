@@ -62,7 +62,7 @@ const OF_ONE_ROW: f64 = 3.0;
 const ONE_BAY: f64 = 0.92;
 const PART_OF_BAY: f64 = 0.8;
 /// What leads through a row at one place has so much of its width in common.
-const SAME: f64 = 0.5;
+const SHARED: f64 = 0.5;
 /// Drift that turns a wall moves the ends of the rows before it against each other by so much, metres.
 const TURNED: f64 = 1.0;
 
@@ -80,7 +80,10 @@ pub fn among(evidence: &Evidence, look: &Look, views: &[Turned], strips: &[Strip
         for (n, own) in place.passing.iter().enumerate().filter(|(_, own)| !own.rows.is_empty() && own.rest <= REST) {
             let asked = Asked::new(&context, n);
             let is_narrow = n >= first && asked.width < asked.least() && !own.is_whole();
-            stays[n] &= asked.is_way() && (!is_narrow || asked.is_closed()) && !context.bars.are_parted(n);
+            stays[n] &= asked.is_way()
+                && (!is_narrow || asked.is_closed())
+                && !context.bars.are_parted(n)
+                && !context.bars.is_beside_flues(n);
             if let Some(cut) = stays[n].then(|| context.bars.cut(n)).flatten() {
                 pieces[n] = cut;
             }
@@ -155,7 +158,7 @@ impl<'a> Context<'a> {
         let own = &self.place.passing[n];
         let is_same = |m: usize| {
             let [one, other] = [n, m].map(|n| &self.strips[n]);
-            overlap(one.across, other.across) > SAME * one.width().min(other.width())
+            overlap(one.across, other.across) > SHARED * one.width().min(other.width())
         };
         let is_beside = |m: usize| {
             let other = &self.place.passing[m];
