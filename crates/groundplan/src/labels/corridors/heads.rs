@@ -5,7 +5,7 @@ use super::known::{Known, Led};
 use super::pillared;
 use super::stretches;
 use crate::bands::flat_map_each;
-use crate::ends::{around, sorted};
+use crate::ends::{around, holds, sorted};
 use crate::grid::Frame;
 use crate::labels::Evidence;
 use crate::labels::corridors::Strip;
@@ -135,15 +135,13 @@ impl Heads<'_> {
                 let [width, most] = around(free.iter().copied());
                 // Empty bays have their uprights: where one row has none for longer, it ends there.
                 let are_bays = self.view.pitch.is_some_and(|pitch| most <= BAY * pitch);
-                let last = [chain[from].aisles[0], chain[to - 1].aisles[1]];
-                let end = |n: usize| self.wall(n).unwrap_or(self.strips[n].along[self.side]);
-                let is_short = || last.into_iter().any(|n| self.is_past(n, end(n), wall));
-                if !are_bays && (empty - width >= APART || is_short()) {
+                if !are_bays && (empty - width >= APART || self.is_opened(&chain[from..to], wall)) {
                     found.extend(self.way(&chain[from..to], wall, width).map(|led| Head { led, free }));
                 }
-            } else if let Some([wall, width, _]) = ends[from]
-                .filter(|&[wall, ..]| self.leads_past(&chain[from], wall) || self.steps_out(chain, &ends, from))
-            {
+            } else if let Some([wall, width, _]) = ends[from].filter(|&[wall, ..]| {
+                let row = &chain[from..=from];
+                self.leads_past(&chain[from], wall) || self.steps_out(chain, &ends, from) || self.is_led_out(row, wall)
+            }) {
                 found.extend(self.way(&chain[from..=from], wall, width).map(|led| Head { led, free: vec![width] }));
             }
             from = to.max(from + 1);
@@ -174,6 +172,26 @@ impl Heads<'_> {
         let taken = self.view.some_blocked(columns, row.faces[0], row.faces[1]);
         taken.iter().any(|share| *share >= CLOSED)
             && row.aisles.into_iter().any(|n| self.is_past(n, self.strips[n].along[self.side], wall))
+    }
+
+    /// True when something leads out through the wall before some rows: one of their aisles, or a way that begins there.
+    fn is_opened(&self, rows: &[Between], wall: f64) -> bool {
+        let end = |n: usize| self.wall(n).unwrap_or(self.strips[n].along[self.side]);
+        let mut aisles = rows.iter().flat_map(|row| row.aisles);
+        aisles.any(|n| self.is_past(n, end(n), wall)) || self.is_led_out(rows, wall)
+    }
+
+    /// True when a way that is none of their aisles begins at the wall before some rows and leads out.
+    fn is_led_out(&self, rows: &[Between], wall: f64) -> bool {
+        let [Some(first), Some(last)] = [rows.first(), rows.last()] else { return false };
+        let middles = sorted([first.aisles[0], last.aisles[1]].map(|n| self.strips[n].middle()));
+        let outwards = |place: f64| if self.side == 0 { wall - place } else { place - wall };
+        self.strips.iter().any(|strip| {
+            strip.direction == self.view.direction
+                && holds(middles, strip.middle())
+                && outwards(strip.along[1 - self.side]).abs() <= strip.width().max(IN_LINE)
+                && outwards(strip.along[self.side]) >= strip.width()
+        })
     }
 
     /// True when the wall before a row lies farther out than that before a row beside it: there the hall has a corner, and the row's
