@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
-from _legs import Box
+from _legs import Box, Picture
 from _legs import hall as drawn
 
 import groundplan
@@ -170,3 +171,51 @@ def test_a_way_one_bay_wide_between_bars_through_the_only_double_row_is_no_empty
     survey = groundplan.survey(drawn(33.0, 8.8, boxes()), resolution=0.05)
     across = [way["width"] for way in survey.of_kind("corridor") if way["name"].startswith("C")]
     assert len(across) == 3
+
+
+def sheeted(x: float, y: float, full: npt.NDArray[np.bool_], bay: float) -> Iterator[Box]:
+    """Two racks with a flue of 15 cm, posts at both faces of the row and a sheet across either end; goods fill bays."""
+    racks, bays, depth, flue = 2, full.shape[1], 1.05, 0.15
+    deep = racks * depth + flue
+    for n in range(bays + 1):
+        for low in (y, y + deep - 0.1):
+            yield x + n * bay - 0.05, low, x + n * bay + 0.05, low + 0.1
+    for n in (0, bays):
+        yield x + n * bay - 0.05, y, x + n * bay + 0.05, y + deep
+    for rack, n in np.argwhere(full).tolist():
+        low = y + rack * (depth + flue)
+        yield x + n * bay + 0.1, low + 0.05 * (1 - rack), x + (n + 1) * bay - 0.1, low + depth - 0.05 * rack
+
+
+def partly_full(draws: np.random.Generator, bays: int) -> npt.NDArray[np.bool_]:
+    """Which of two racks' bays are full: most are, and one of the two that face each other always."""
+    full = draws.random((2, bays)) < 0.8
+    full[draws.integers(2, size=bays), np.arange(bays)] = True
+    return full
+
+
+def kinds(picture: Picture) -> list[str]:
+    survey = groundplan.survey(picture, resolution=0.05)
+    return sorted(label["type"] for label in survey.of_kind("junction"))
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("way", [2.1, 2.35])
+def test_a_way_narrower_than_bays_is_told_by_the_sheets_on_both_its_sides(way: float, seed: int) -> None:
+    draws, bay = np.random.default_rng(seed), 2.8
+
+    def boxes() -> Iterator[Box]:
+        for y, before in ((2.8, 4), (7.85, 7)):
+            yield from sheeted(2.8, y, partly_full(draws, before), bay)
+            yield from sheeted(2.8 + before * bay + way, y, partly_full(draws, 12 - before), bay)
+
+    assert kinds(drawn(12 * bay + way + 5.6, 12.9, boxes())) == ["L"] * 4 + ["T"] * 6
+
+
+@pytest.mark.parametrize("bay", [2.1, 2.8])
+def test_a_bay_that_both_racks_have_empty_is_no_way_where_a_flue_parts_its_sides_and_sheets_end_the_row(
+    bay: float,
+) -> None:
+    full = partly_full(np.random.default_rng(2), 12)
+    full[:, 4] = False
+    assert kinds(drawn(12 * bay + 5.6, 7.85, sheeted(2.8, 2.8, full, bay))) == ["L"] * 4

@@ -272,3 +272,25 @@ def test_a_corridor_between_walls_of_its_own_forks_off_another_though_a_third_cr
     survey = groundplan.survey(canvas.picture, resolution=RESOLUTION)
     askew = [way["axis"] for way in survey.of_kind("corridor") if 2 < abs(np.subtract(*way["axis"])[1]) < 20]
     assert max(np.hypot(*np.subtract(*axis)) for axis in askew) > 30
+
+
+@pytest.mark.parametrize("low", [2.0, 2.7])
+@pytest.mark.parametrize("head", [2.0, 2.6])
+def test_a_way_leads_past_the_end_of_a_single_row_before_a_passage(low: float, head: float) -> None:
+    # Two halls of one row each; the passage between them opens opposite the ends of both rows.
+    floors: list[Box] = [(0, 0, 30, 7.8), (29, low, 41, low + 2.4), (40, 0, 66, 7.8)]
+    racks = [*rows([2.8], [(3.2, 30 - head)], depth=2.2), *rows([2.8], [(43.2, 62.5)], depth=2.2)]
+    assert found(site(floors, racks))[0] == ["L"] * 8 + ["T"] * 2
+
+
+@pytest.mark.parametrize(("depth", "aisle", "head"), [(1.2, 3.2, 3.6), (1.2, 4.0, 3.6), (0.9, 4.0, 4.0)])
+def test_a_way_leads_past_rows_that_end_alike_before_a_wall_through_which_an_aisle_leads_on(
+    depth: float, aisle: float, head: float
+) -> None:
+    # Behind the gate two rows lie across.
+    up, low = 3.0, 3.0 + aisle + depth
+    high = up + 2 * depth + 3 * aisle
+    floors: list[Box] = [(0, up, 24, high), (23, low, 26, low + aisle), (25, up - 2, 40, high + 2)]
+    racks = rows([up + aisle, low + aisle], [(3.2, 24 - head)], depth=depth)
+    across: list[Box] = [(28.5, up + 1, 30.5, high - 1), (34, up + 1, 36, high - 1)]
+    assert found(site(floors, [*racks, *across]))[0] == ["L"] * 8 + ["T"] * 4 + ["X"]

@@ -205,6 +205,21 @@ def test_an_aisle_ends_at_the_wall_though_the_last_bay_on_one_side_is_empty() ->
     assert ends == pytest.approx([2.5, 6.7, 10.9, 14.3], abs=0.2)
 
 
+@pytest.mark.parametrize("metres", [3.2, 4.5, 7.0])
+def test_an_aisle_ends_at_the_wall_though_the_last_bays_on_both_sides_are_empty(metres: float) -> None:
+    # The same, of two racks that face each other.
+    picture = np.full((320, 520), 205, np.uint8)
+    picture[18:302, 18:502] = 0
+    picture[20:300, 20:500] = 254
+    for y in (80, 164, 248):
+        picture[y : y + 24, 20:420] = 0
+    for y in (82, 164):
+        picture[y : y + 22, 20 : 20 + round(20 * metres)] = 254
+    survey = groundplan.survey(np.ascontiguousarray(picture[::-1]), resolution=RESOLUTION, origin=(0, 0))
+    ends = sorted(label["at"][1] for label in survey.of_kind("junction") if label["type"] == "end")
+    assert ends == pytest.approx([2.5, 6.7, 10.9, 14.3], abs=0.2)
+
+
 def test_where_a_row_ends_before_the_wall_the_aisles_beside_it_lead_round_its_head() -> None:
     # Four rows of 0.6 m, 2.2 m apart, between aisles that end at a wall; one of the rows ends 3.2 m before that.
     picture = np.full((308, 644), 205, np.uint8)

@@ -24,6 +24,11 @@ const BEYOND: (f64, f64) = (0.3, 1.3);
 const FLOOR: f64 = 0.5;
 /// Things are parted by more than so many metres.
 const PARTED: f64 = 0.3;
+/// Between bays a way is free but for this share, and the wall before it goes on beside it for so long, metres, and stands across
+/// so much of that.
+const CLEAR: f64 = 0.1;
+const BESIDE: f64 = 0.8;
+const WALL: f64 = 0.5;
 /// What bays are empty before stands so near to the strip behind them, metres.
 const FACE: f64 = 0.3;
 
@@ -42,16 +47,34 @@ pub fn is_sided_but_for_bays(view: &Turned, strip: &Strip) -> bool {
 /// True when something does along one of them between two places, and before the nearest strip on the other side something
 /// stands there, no further off than a row is deep: behind bays, of which the last are empty.
 pub fn is_sided_by_bays(view: &Turned, strip: &Strip, along: [f64; 2], beside: [f64; 2]) -> bool {
+    let sided = are_sided(view, strip, along);
+    let behind = stand_behind(view, strip, along, beside);
+    // Racks stand beside one aisle alone in few places, and things that are none in many.
+    beside.iter().any(|place| place.is_finite()) && (0..2).any(|side| sided[side] && behind[1 - side])
+}
+
+/// True when something stands so behind both its sides, before other strips, and nothing between them, up to a wall that goes on
+/// beside one of them.
+pub fn is_between_bays(view: &Turned, strip: &Strip, along: [f64; 2], wall: f64, beside: [f64; 2]) -> bool {
+    let [low, high] = strip.across;
+    let columns = view.column(along[0])..view.column(along[1]);
+    let at_wall = view.columns(wider([wall; 2], PARTED));
+    let goes_on = |[low, high]: [f64; 2]| at_wall.clone().any(|column| view.occupied(column, low, high) >= WALL);
+    beside.iter().all(|place| place.is_finite())
+        && view.mean_blocked(columns, low, high) <= CLEAR
+        && stand_behind(view, strip, along, beside) == [true; 2]
+        && [[low - BESIDE, low], [high, high + BESIDE]].into_iter().any(goes_on)
+}
+
+/// Behind which of a strip's sides something stands, before the nearest strip there and no further off than a row is deep.
+fn stand_behind(view: &Turned, strip: &Strip, along: [f64; 2], beside: [f64; 2]) -> [bool; 2] {
     let columns = view.column(along[0])..view.column(along[1]);
     let [low, high] = strip.across;
     let behind = [[(low - DEPTH.1).max(beside[0] - FACE), low], [high, (high + DEPTH.1).min(beside[1] + FACE)]];
-    let is_row = |side: usize| {
-        let stands = view.some_occupied(columns.clone(), behind[side][0], behind[side][1]);
+    behind.map(|[low, high]| {
+        let stands = view.some_occupied(columns.clone(), low, high);
         stands.iter().filter(|share| **share > 0.0).count() as f64 >= SIDED * columns.len() as f64
-    };
-    let sided = are_sided(view, strip, along);
-    // Racks stand beside one aisle alone in few places, and things that are none in many.
-    beside.iter().any(|place| place.is_finite()) && (0..2).any(|side| sided[side] && is_row(1 - side))
+    })
 }
 
 /// Along which of a strip's sides something that is not free stands between two places.

@@ -87,13 +87,15 @@ pub fn is_shut_at(view: &Turned, strip: &Strip, column: usize) -> bool {
 }
 
 /// Where a strip ends: at what closes it near one of its ends, or no further off than bays are long, where one of its sides
-/// goes on to that; the last bay on the other side is empty, before what another strip beside it lies behind.
-pub fn end(view: &Turned, strip: &Strip, side: usize, beside: impl FnOnce() -> [f64; 2]) -> Option<f64> {
-    let is_sided_to = |place: &f64| {
-        let along = sorted([strip.along[side], *place]);
-        sided::is_sided_by_bays(view, strip, along, beside())
-    };
-    closed(view, strip, side, LOOK).or_else(|| closed(view, strip, side, LONGEST).filter(is_sided_to))
+/// goes on to that; the last bay on the other side is empty, before what another strip beside it lies behind. If the last bays on
+/// both sides are it is no further off than two of them.
+pub fn end(view: &Turned, strip: &Strip, side: usize, beside: impl Fn() -> [f64; 2]) -> Option<f64> {
+    let along = |place: f64| sorted([strip.along[side], place]);
+    let is_sided_to = |place: &f64| sided::is_sided_by_bays(view, strip, along(*place), beside());
+    let is_between_bays = |place: &f64| sided::is_between_bays(view, strip, along(*place), *place, beside());
+    closed(view, strip, side, LOOK)
+        .or_else(|| closed(view, strip, side, LONGEST).filter(is_sided_to))
+        .or_else(|| closed(view, strip, side, 2.0 * LONGEST).filter(is_between_bays))
 }
 
 /// A strip without what stands at its sides, across.

@@ -31,6 +31,13 @@ pub enum Closing {
     Sheet,
 }
 
+impl Closing {
+    /// From one face to the other, be there a flue or not.
+    pub fn is_whole(self) -> bool {
+        self >= Self::Whole
+    }
+}
+
 /// The lines across a row along which something may close it: they lean as the direction does that crosses it.
 pub struct LinesAcross<'a> {
     pub look: &'a Look<'a>,

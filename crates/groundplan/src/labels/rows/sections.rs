@@ -221,7 +221,7 @@ impl<'a> Columns<'a> {
     /// Whether the row is closed at each end of what is free of it, but for what lies between two sides.
     pub fn closed_elsewhere(&self, sides: [f64; 2]) -> Vec<bool> {
         let others = self.free().into_iter().filter(|(ends, _)| overlap(*ends, sides) <= 0.0);
-        others.flat_map(|(_, closed)| closed).map(|closing| closing >= Closing::Whole).collect()
+        others.flat_map(|(_, closed)| closed).map(Closing::is_whole).collect()
     }
 
     /// Between which two uprights a place lies in which none stands, along the row's middle.
@@ -311,7 +311,7 @@ impl<'a> Columns<'a> {
     pub fn is_free_beside_goods(&self, sides: [f64; 2]) -> bool {
         let ends = |side: f64| {
             let [from, to] = wider([side; 2], AT_SIDE).map(|u| self.column(u));
-            (from..to).any(|n| self.blocked[n] >= TAKEN || self.closing(n) >= Closing::Whole)
+            (from..to).any(|n| self.blocked[n] >= TAKEN || self.closing(n).is_whole())
         };
         let (first, last) = self.inner(sides);
         let is_free: Vec<bool> = (first..last).map(|n| self.blocked[n] <= LEFT && !self.stops[n]).collect();
@@ -437,7 +437,7 @@ impl<'a> Columns<'a> {
 
     /// True when something closes all of the row's depth at a place along.
     pub fn is_closed_at(&self, along: f64) -> bool {
-        self.closing_at(along) >= Closing::Whole
+        self.closing_at(along).is_whole()
     }
 
     /// How the row is closed at a place along.
@@ -464,7 +464,7 @@ impl<'a> Columns<'a> {
     }
 
     fn is_way(&self, from: usize, to: usize, least: f64) -> bool {
-        let is_closed = || [from, to].into_iter().all(|n| self.closing(n) >= Closing::Whole);
+        let is_closed = || [from, to].into_iter().all(|n| self.closing(n).is_whole());
         let usual = if self.pitch.is_none() { WIDTH.0 - CLOSED } else { WIDTH.0 };
         // Shelves are as narrow as ways between aisles for people: where others are empty, too, it is one.
         let is_alone = || self.is_free_way(from, to, least) && self.is_full([self.place(from), self.place(to)]);

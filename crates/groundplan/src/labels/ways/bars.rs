@@ -13,6 +13,7 @@ use crate::labels::rows::SHORTEST;
 use crate::labels::rows::closing::Closing;
 use crate::labels::rows::sections::{Columns, SIDE};
 use crate::labels::view::look::Look;
+use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::iter::{self, Sum};
 
@@ -87,36 +88,33 @@ impl Sum for Often {
     }
 }
 
-/// What a bar is in a part of a place, and how often they stand at the rows' ends there, and beside bays.
+/// How often bars stand at the rows' ends in a part of a place, and beside bays; and whether those are sheets.
 #[derive(Clone, Copy)]
 struct Part {
-    bar: Closing,
     ends: Often,
     bays: Often,
+    has_sheets: bool,
 }
 
 impl Part {
     fn new<'a>(rows: impl Iterator<Item = &'a Closed<'a>> + Clone) -> Self {
         let ends = || rows.clone().flat_map(|row| row.ends.iter().copied());
-        let closed = Often::of(ends().map(|end| end >= Closing::Whole)).closed;
-        let sheets = Often::of(ends().map(|end| end == Closing::Sheet)).closed;
-        let are_sheets = closed >= SHEETS.0 && f64::from(sheets) >= SHEETS.1 * f64::from(closed);
-        let bar = if are_sheets { Closing::Sheet } else { Closing::Whole };
+        let [closed, sheets] = [Closing::Whole, Closing::Sheet].map(|least| Often::of(ends().map(|end| end >= least)));
         // Between two bars a way may lie that is not known.
-        let bays = rows.clone().flat_map(|row| &row.bays).filter(|sides| sides.iter().any(|side| *side < bar));
-        let is_bar = |side: Closing| side >= bar;
-        Self { bar, ends: Often::of(ends().map(is_bar)), bays: Often::of(bays.flatten().copied().map(is_bar)) }
-    }
-
-    /// How often bars stand at some sides.
-    fn often(self, sides: impl IntoIterator<Item = Closing>) -> Often {
-        Often::of(sides.into_iter().map(|side| side >= self.bar))
+        let bays = rows.clone().flat_map(|row| &row.bays).filter(|sides| sides.iter().any(|side| !side.is_whole()));
+        Self {
+            ends: closed,
+            bays: Often::of(bays.flatten().copied().map(Closing::is_whole)),
+            has_sheets: closed.closed >= SHEETS.0 && f64::from(sheets.closed) >= SHEETS.1 * f64::from(closed.closed),
+        }
     }
 }
 
 /// How often bars stand at the sides of something, and what they do in its part of the place.
 struct Told {
     sides: Often,
+    /// True when all of them are sheets.
+    are_sheets: bool,
     part: Part,
 }
 
@@ -133,7 +131,7 @@ impl Told {
 
     /// Sheets do: goods of two racks seldom stand so.
     fn is_between_sheets(&self) -> bool {
-        self.part.bar == Closing::Sheet && self.is_closed()
+        self.are_sheets && self.part.has_sheets && self.is_closed()
     }
 
     /// None stands there, as beside bays.
@@ -220,7 +218,9 @@ impl<'a> Bars<'a> {
                 && other.rows.iter().all(|row| part.contains(row))
         };
         let others: Vec<usize> = (0..self.strips.len()).filter(is_alike).collect();
-        let sides = told.sides.and(others.iter().map(|&m| told.part.often(self.closed(m).iter().copied())).sum());
+        let sides = told
+            .sides
+            .and(others.iter().map(|&m| Often::of(self.closed(m).iter().copied().map(Closing::is_whole))).sum());
         let is_of_two_racks = |m: &&usize| self.place.are_double(&self.place.passing[**m]);
         let double = iter::once(&n).chain(&others).filter(is_of_two_racks).count();
         others.len() >= OTHERS && DOUBLE * double > others.len() && Told { sides, ..told }.is_way()
@@ -298,7 +298,7 @@ impl<'a> Bars<'a> {
         };
         self.place.is_as_bays(own, self.strips[n].width())
             && own.rows.iter().all(is_flued)
-            && first.is_some_and(|first| self.part_with(first).bar == Closing::Sheet)
+            && first.is_some_and(|first| self.part_with(first).has_sheets)
     }
 
     /// True when backs of racks stand across a strip in one row.
@@ -362,9 +362,9 @@ impl<'a> Bars<'a> {
         let first = self.place.first_of(&self.place.passing[n]).filter(|_| self.place.passing[n].is_within)?;
         let part = self.part_with(first);
         let is_all = rows == self.place.passing[n].rows;
-        let sides =
-            if is_all { part.often(self.closed(n).iter().copied()) } else { part.often(self.closed_in(n, rows)) };
-        Some(Told { sides, part })
+        let closed = if is_all { Cow::Borrowed(self.closed(n)) } else { Cow::Owned(self.closed_in(n, rows)) };
+        let are_sheets = closed.iter().all(|side| *side == Closing::Sheet);
+        Some(Told { sides: Often::of(closed.iter().copied().map(Closing::is_whole)), are_sheets, part })
     }
 
     /// How the rows that one of the strips passes through are closed at its sides.
