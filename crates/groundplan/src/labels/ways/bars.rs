@@ -97,11 +97,11 @@ struct Part {
 }
 
 impl Part {
-    fn new<'a>(rows: impl Iterator<Item = &'a Closed<'a>> + Clone) -> Self {
-        let ends = || rows.clone().flat_map(|row| row.ends.iter().copied());
+    fn new(rows: &[&Closed]) -> Self {
+        let ends = || rows.iter().flat_map(|row| row.ends.iter().copied());
         let [closed, sheets] = [Closing::Whole, Closing::Sheet].map(|least| Often::of(ends().map(|end| end >= least)));
         // Between two bars a way may lie that is not known.
-        let bays = rows.clone().flat_map(|row| &row.bays).filter(|sides| sides.iter().any(|side| !side.is_whole()));
+        let bays = rows.iter().flat_map(|row| &row.bays).filter(|sides| sides.iter().any(|side| !side.is_whole()));
         Self {
             ends: closed,
             bays: Often::of(bays.flatten().copied().map(Closing::is_whole)),
@@ -379,8 +379,8 @@ impl<'a> Bars<'a> {
 
     /// The part of the place that a row is of.
     fn part_with(&self, row: usize) -> Part {
-        let rows = self.place.rows_with(row);
-        Part::new(rows.iter().map(|&row| self.row(row)))
+        let rows: Vec<&Closed> = self.place.rows_with(row).into_iter().map(|row| self.row(row)).collect();
+        Part::new(&rows)
     }
 
     /// A strip across a row.
