@@ -185,7 +185,7 @@ impl Heads<'_> {
     fn is_led_out(&self, rows: &[Between], wall: f64) -> bool {
         let [Some(first), Some(last)] = [rows.first(), rows.last()] else { return false };
         let middles = sorted([first.aisles[0], last.aisles[1]].map(|n| self.strips[n].middle()));
-        let outwards = |place: f64| if self.side == 0 { wall - place } else { place - wall };
+        let outwards = |place: f64| (place - wall) * shut::sign(self.side);
         self.strips.iter().any(|strip| {
             strip.direction == self.view.direction
                 && holds(middles, strip.middle())
@@ -205,8 +205,7 @@ impl Heads<'_> {
 
     /// True when a place along an aisle is farther outwards than a wall by as much as the aisle is wide.
     fn is_past(&self, aisle: usize, place: f64, wall: f64) -> bool {
-        let outwards = |place: f64| if self.side == 0 { -place } else { place };
-        outwards(place) - outwards(wall) >= self.strips[aisle].width()
+        (place - wall) * shut::sign(self.side) >= self.strips[aisle].width()
     }
 
     /// Where what closes an aisle beyond its end begins.
